@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Preconditioned conjugate gradients for symmetric positive (semi)definite operators. [SAAD03, alg. 9.1]
+#pragma once
+
+#include "tunica/la/krylov.hpp"
+
+namespace tunica::la {
+
+/// Solves A x = b from the start x (n); A, M symmetric, M definite. The residual is the true one:
+/// when the recurrence claims convergence b - A x is evaluated, and the iteration restarts from it
+/// when the claim was wrong. A semidefinite A needs a b in its range.
+template <LinearOperator Operator, Preconditioner Precond>
+SolveReport cg(const Operator& A, const Precond& M, const Eigen::VectorXd& b, Eigen::VectorXd& x,
+               const KrylovOptions& options = {}) {
+  SolveReport report;
+  detail::Watch watch(norm(b), options);
+  Eigen::VectorXd r, z, p, q;
+  A.apply(x, q);
+  r = b - q;
+  double residual = norm(r);
+  int claims = 0;
+  for (int k = 0;;) {
+    if (watch.done(residual, k, report)) return report;
+    M.apply(r, z);
+    p = z;
+    double rz = dot(r, z);
+    while (true) {
+      A.apply(p, q);
+      const double pq = dot(p, q);
+      if (!(pq > 0) || !(rz > 0)) {  // not definite, or NaN: no descent from here
+        report.iterations = k;
+        report.status =
+            std::isfinite(pq) && std::isfinite(rz) && pq == 0 ? Status::stalled : Status::diverged;
+        return report;
+      }
+      const double alpha = rz / pq;
+      x += alpha * p;
+      r -= alpha * q;
+      ++k;
+      residual = norm(r);
+      if (residual <= watch.goal() || !std::isfinite(residual)) break;
+      if (watch.done(residual, k, report)) return report;
+      M.apply(r, z);
+      const double next = dot(r, z);
+      p = z + (next / rz) * p;
+      rz = next;
+    }
+    A.apply(x, q);
+    r = b - q;
+    residual = norm(r);
+    if (++claims > 3 && residual > watch.goal() && std::isfinite(residual)) {  // round-off floor
+      report.iterations = k;
+      report.residual = residual / norm(b);
+      report.status = Status::stalled;
+      return report;
+    }
+  }
+}
+
+}  // namespace tunica::la
