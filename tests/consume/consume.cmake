@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: MIT
+# cmake -D way=... -D source=... -D build=... -D scratch=... -D generator=... -D compiler=... -P consume.cmake
+cmake_minimum_required(VERSION 3.25)
+file(REMOVE_RECURSE ${scratch})
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  if(NOT status EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${command}\n${text}")
+  endif()
+  set(text "${text}" PARENT_SCOPE)
+endfunction()
+
+set(user ${CMAKE_CURRENT_LIST_DIR}/user)
+if(way STREQUAL "find_package" OR way STREQUAL "pkg-config")
+  run(${CMAKE_COMMAND} --install ${build} --prefix ${scratch}/prefix)
+  # Moved, as a package is: nothing in it may know where it was first.
+  file(RENAME ${scratch}/prefix ${scratch}/moved)
+endif()
+
+if(way STREQUAL "pkg-config")
+  find_program(pkg_config pkg-config)
+  if(NOT pkg_config)
+    message(STATUS "SKIPPED: no pkg-config")
+    return()
+  endif()
+  set(ENV{PKG_CONFIG_PATH} ${scratch}/moved/share/pkgconfig)
+  run(${pkg_config} --cflags --libs tunica)
+  separate_arguments(flags UNIX_COMMAND "${text}")
+  run(${compiler} -std=c++20 ${user}/main.cpp ${flags} -o ${scratch}/user)
+  run(${scratch}/user)
+else()
+  run(${CMAKE_COMMAND} -S ${user} -B ${scratch}/build -G ${generator} -D CMAKE_CXX_COMPILER=${compiler}
+      -D way=${way} -D tunica_source=${source} -D CMAKE_PREFIX_PATH=${scratch}/moved)
+  run(${CMAKE_COMMAND} --build ${scratch}/build)
+  run(${scratch}/build/user)
+  if(NOT way STREQUAL "find_package")  # a user's build holds none of our tests and programs
+    run(${CMAKE_COMMAND} --build ${scratch}/build --target help)
+    if(text MATCHES "test_main|empty_scene|all_verify")
+      message(FATAL_ERROR "a consumer builds our own targets:\n${text}")
+    endif()
+  endif()
+endif()
+file(REMOVE_RECURSE ${scratch})
