@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// What holds on each patch of the flow: a wall, a prescribed velocity, or a prescribed pressure.
+#pragma once
+
+#include "tunica/core/error.hpp"
+#include "tunica/fluid/boundary_function.hpp"
+#include "tunica/mesh/mesh.hpp"
+#include "tunica/mesh/patch_nodes.hpp"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tunica::fluid {
+
+/// A velocity of fixed shape times a waveform: column k belongs to node nodes[k].
+struct Profile {
+  std::vector<Index> nodes;
+  Points<3> velocity;  // of unit mean: 3 x nodes
+};
+
+struct Outlet {
+  /// beta of the stress -beta rho (a.n)_- u against inflow through the patch; the energy is bounded
+  /// from 0.5 on, 0 leaves the pressure alone (inlets driven by pressure). [MOGHADAM11]
+  double backflow = 0;
+};
+
+enum class Kind { wall, velocity, pressure };
+
+struct Condition {
+  std::string name;
+  Connectivity<3> faces;
+  std::vector<Index> nodes;  // ascending
+  Kind kind = Kind::wall;
+  BoundaryFunction<Vec3> velocity{};  // [m/s]
+  BoundaryFunction<double> scalar{};  // a pressure [Pa], or the waveform of a profile
+  Points<3> profile{};                // 3 x nodes; no columns: `velocity` counts
+  double backflow = 0;
+};
+
+/// A patch without a condition is a wall: no slip at the velocity of the grid. On an edge between
+/// patches a wall goes before a velocity, a velocity before nothing; pressures hold on their whole patch.
+class Conditions {
+ public:
+  explicit Conditions(const mesh::TetMesh& mesh) : node_count_(static_cast<std::size_t>(mesh.node_count())) {
+    Vec3 sum = Vec3::Zero();
+    double area = 0;
+    for (const auto& patch : mesh.patches) {
+      list_.push_back({.name = patch.name, .faces = patch.faces, .nodes = mesh::patch_nodes(patch)});
+      for (Eigen::Index f = 0; f < patch.faces.cols(); ++f) {
+        const Vec3 n = area_vector(mesh.nodes, patch.faces, f);
+        sum += n, area += n.norm();
+      }
+    }
+    if (!(area > 0) || !(sum.norm() < 1e-8 * area))
+      throw MeshError("the patches of the fluid do not close its boundary: their area vectors add up to " +
+                      std::to_string(area > 0 ? sum.norm() / area : 1.0) + " of its area");
+    flag();
+  }
+
+  [[nodiscard]] Condition& operator[](std::string_view name) {
+    std::string known;
+    for (auto& c : list_) {
+      if (c.name == name) return c;
+      known += (known.empty() ? "" : ", ") + c.name;
+    }
+    throw MeshError("no patch named \"" + std::string(name) + "\"; there are: " + known);
+  }
+  [[nodiscard]] const Condition& operator[](std::string_view name) const {
+    return const_cast<Conditions&>(*this)[name];
+  }
+  [[nodiscard]] const std::vector<Condition>& list() const { return list_; }
+
+  /// Marks the nodes again after a condition was changed.
+  void flag() {
+    velocity_.assign(node_count_, 0), pressure_.assign(node_count_, 0);
+    any_pressure_ = false;
+    for (const auto& c : list_)
+      for (const Index n : c.nodes) {
+        const auto k = static_cast<std::size_t>(n);
+        if (c.kind == Kind::pressure)
+          pressure_[k] = 1, any_pressure_ = true;
+        else
+          velocity_[k] = 1;
+      }
+  }
+
+  /// One flag a node: its velocity, or its pressure, is prescribed.
+  [[nodiscard]] const std::vector<char>& velocity_flags() const { return velocity_; }
+  [[nodiscard]] const std::vector<char>& pressure_flags() const { return pressure_; }
+  [[nodiscard]] bool any_pressure() const { return any_pressure_; }
+
+  /// Writes the prescribed velocities at time t into u (3 x nodes); w: velocity of the grid.
+  void impose_velocity(const Points<3>& x, const Points<3>& w, double t, Points<3>& u) const {
+    for (const auto& c : list_) {
+      if (c.kind != Kind::velocity) continue;
+      const double waveform = c.profile.cols() > 0 ? c.scalar(Vec3::Zero(), t) : 0;
+      for (std::size_t k = 0; k < c.nodes.size(); ++k) {
+        const Index n = c.nodes[k];
+        if (c.profile.cols() > 0)
+          u.col(n) = waveform * c.profile.col(static_cast<Eigen::Index>(k));
+        else
+          u.col(n) = c.velocity(x.col(n), t);
+      }
+    }
+    for (const auto& c : list_)
+      if (c.kind == Kind::wall)
+        for (const Index n : c.nodes) u.col(n) = w.col(n);
+  }
+
+  /// Writes the prescribed pressures at time t into p (nodes), 0 elsewhere.
+  void impose_pressure(const Points<3>& x, double t, Eigen::VectorXd& p) const {
+    p.setZero(static_cast<Eigen::Index>(node_count_));
+    for (const auto& c : list_)
+      if (c.kind == Kind::pressure)
+        for (const Index n : c.nodes) p[n] = c.scalar(x.col(n), t);
+  }
+
+  /// Normal times area of a face, outward [m2].
+  [[nodiscard]] static Vec3 area_vector(const Points<3>& x, const Connectivity<3>& faces, Eigen::Index f) {
+    const Vec3 a = x.col(faces(0, f)), b = x.col(faces(1, f)), c = x.col(faces(2, f));
+    return 0.5 * (b - a).cross(c - a);
+  }
+
+  /// int v . n over the faces for a nodal field v (3 x nodes).
+  [[nodiscard]] static double flux(const Points<3>& x, const Connectivity<3>& faces, const Points<3>& v) {
+    double sum = 0;
+    for (Eigen::Index f = 0; f < faces.cols(); ++f)
+      sum += area_vector(x, faces, f).dot(v.col(faces(0, f)) + v.col(faces(1, f)) + v.col(faces(2, f))) / 3;
+    return sum;
+  }
+
+ private:
+  std::size_t node_count_;
+  std::vector<Condition> list_;
+  std::vector<char> velocity_, pressure_;
+  bool any_pressure_ = false;
+};
+
+}  // namespace tunica::fluid

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// The pressure equation with its gradient projected implicitly: symmetric, matrix-free. [ONATE06]
+#pragma once
+
+#include "tunica/core/parallel.hpp"
+#include "tunica/fem/assembly.hpp"
+#include "tunica/fem/p1_tets.hpp"
+#include "tunica/la/vector_ops.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace tunica::fluid {
+
+/// A = gamma L + T,  T = L_t - sum_c Q_c Mt^-1 Q_c^T  (nodes x nodes, symmetric, positive semidefinite:
+/// constants are its null space), where
+///   L_ij = (grad N_i, grad N_j),  L_t with weight tau,  Q_c,ij = (tau dN_i/dx_c, N_j),
+///   Mt = lumped (tau N_i, N_j).
+/// T p = (tau grad N_i, grad p - P grad p): it vanishes for a linear p.
+/// Rows of prescribed nodes are zero: a vector that is zero there stays so.
+class PressureOperator {
+ public:
+  using Pattern = fem::Assembly<mesh::Tet4, 1>;
+
+  explicit PressureOperator(const Pattern& pattern)
+      : preconditioning_(pattern.matrix<Eigen::RowMajor>()),
+        forward_(4, preconditioning_.nonZeros()),
+        backward_(3, preconditioning_.nonZeros()),
+        lumped_(pattern.node_count()),
+        projected_(3, pattern.node_count()) {}
+
+  /// Refills everything for these elements; tau [m3 s/kg] a cell, gamma = dt / (rho c0) [m3 s/kg].
+  void assemble(const Pattern& pattern, const Connectivity<4>& cells, const fem::P1Tets& tets,
+                const std::vector<double>& tau, double gamma, const std::vector<char>& prescribed) {
+    forward_.setZero(), backward_.setZero(), lumped_.setZero();
+    pattern.for_each_cell([&](Index e) {
+      const fem::P1Tet& tet = tets[e];
+      const double t = tau[static_cast<std::size_t>(e)], quarter = t * tet.volume / 4;
+      const Eigen::Matrix4d stiffness = (gamma + t) * tet.volume * (tet.grad.transpose() * tet.grad);
+      const Index* position = pattern.positions(e);
+      for (int a = 0; a < 4; ++a) {
+        lumped_[cells(a, e)] += quarter;
+        for (int b = 0; b < 4; ++b, ++position) {
+          forward_.col(*position).head<3>() += quarter * tet.grad.col(b);
+          forward_(3, *position) += stiffness(a, b);
+          backward_.col(*position) += quarter * tet.grad.col(a);
+        }
+      }
+    });
+    for (Eigen::Index i = 0; i < lumped_.size(); ++i) lumped_[i] = lumped_[i] > 0 ? 1 / lumped_[i] : 0;
+    prescribed_ = prescribed;
+    double* values = preconditioning_.valuePtr();
+    const int *outer = preconditioning_.outerIndexPtr(), *inner = preconditioning_.innerIndexPtr();
+    for (int i = 0; i < preconditioning_.rows(); ++i)
+      for (int k = outer[i]; k < outer[i + 1]; ++k)
+        values[k] = i == inner[k]                                 ? forward_(3, k)
+                    : is_prescribed(i) || is_prescribed(inner[k]) ? 0.0
+                                                                  : forward_(3, k);
+  }
+
+  /// y = A x. Takes no account of prescribed values in x: the caller zeroes them, or wants their effect.
+  void apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+    apply_all(x, y);
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      if (is_prescribed(static_cast<int>(i))) y[i] = 0;
+  }
+
+  /// y = A x with the rows of the prescribed nodes too.
+  void apply_all(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+    const int *outer = preconditioning_.outerIndexPtr(), *inner = preconditioning_.innerIndexPtr();
+    y.resize(x.size());
+    parallel_chunks(x.size(), la::row_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      for (std::ptrdiff_t i = begin; i < end; ++i) {
+        Eigen::Vector4d sum = Eigen::Vector4d::Zero();  // of Q^T x and (gamma L + L_t) x
+        for (int k = outer[i]; k < outer[i + 1]; ++k) sum += forward_.col(k) * x[inner[k]];
+        projected_.col(i) = lumped_[i] * sum.head<3>();
+        y[i] = sum[3];
+      }
+    });
+    parallel_chunks(x.size(), la::row_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      for (std::ptrdiff_t i = begin; i < end; ++i) {
+        double sum = 0;
+        for (int k = outer[i]; k < outer[i + 1]; ++k) sum += backward_.col(k).dot(projected_.col(inner[k]));
+        y[i] -= sum;
+      }
+    });
+  }
+
+  /// 1 / Mt, 0 at nodes without stabilisation: nodes.
+  [[nodiscard]] const Eigen::VectorXd& inverse_mass() const { return lumped_; }
+
+  /// gamma L + L_t with the coupling cut at prescribed nodes: what incomplete factors are made of.
+  [[nodiscard]] const la::RowMatrix& preconditioning() const { return preconditioning_; }
+
+ private:
+  [[nodiscard]] bool is_prescribed(int i) const { return prescribed_[static_cast<std::size_t>(i)] != 0; }
+
+  la::RowMatrix preconditioning_;
+  Eigen::Matrix<double, 4, Eigen::Dynamic> forward_;   // an entry (i, j): Q_ji and gamma L + L_t
+  Eigen::Matrix<double, 3, Eigen::Dynamic> backward_;  // an entry (i, j): Q_ij
+  Eigen::VectorXd lumped_;                             // 1 / Mt
+  mutable Points<3> projected_;                        // Mt^-1 Q^T x
+  std::vector<char> prescribed_;
+};
+
+}  // namespace tunica::fluid

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+// The pressure increment, the correction of the velocity and the rotational update. [ONATE06; GUERMOND06]
+#pragma once
+
+#include "tunica/fluid/conditions.hpp"
+#include "tunica/fluid/momentum.hpp"
+#include "tunica/fluid/pressure_operator.hpp"
+#include "tunica/fluid/state.hpp"
+#include "tunica/la/cg.hpp"
+#include "tunica/la/preconditioner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace tunica::fluid {
+
+/// The discretisation that a correction works on.
+struct Domain {
+  const Pattern& pattern;
+  const Connectivity<4>& cells;
+  const fem::P1Tets& tets;
+  const Points<3>& position;            // 3 x nodes [m]
+  const Eigen::VectorXd& inverse_mass;  // 1 / M_L: nodes [1/m3]
+  const Conditions& conditions;
+};
+
+class PressureStep {
+ public:
+  explicit PressureStep(const Pattern& pattern) : operator_(pattern) {}
+
+  /// gamma L + T about the advecting velocity a; gamma = dt / (rho c0) [m3 s/kg].
+  template <Rheology R, Stabilization S>
+  void assemble(const Domain& domain, const R& fluid, const S& stabilization, const Points<3>& a,
+                const Points<3>& u, double gamma) {
+    gamma_ = gamma;
+    tau_.resize(static_cast<std::size_t>(domain.cells.cols()));
+    domain.pattern.for_each_cell([&](Index e) {
+      const Eigen::Matrix<double, 3, 4> ae = nodal<3>(a, domain.cells, e);
+      const ElementFlow flow =
+          element_flow(fluid, stabilization, domain.tets[e], ae, nodal<3>(u, domain.cells, e));
+      tau_[static_cast<std::size_t>(e)] =
+          stabilization.mass(fluid.density, flow.viscosity, domain.tets[e].size(), flow.a.norm());
+    });
+    prepare(domain);
+  }
+  /// L alone, times gamma.
+  void assemble_laplacian(const Domain& domain, double gamma) {
+    gamma_ = gamma;
+    tau_.assign(static_cast<std::size_t>(domain.cells.cols()), 0.0);
+    prepare(domain);
+  }
+
+  /// A x = b with x prescribed (on entry, at the nodes with prescribed pressure); elsewhere guess starts
+  /// it. Without any prescribed pressure the mean of x is zero, and b loses what no x can balance.
+  SolveReport solve(const Domain& domain, Eigen::VectorXd b, double round_off, const Eigen::VectorXd& guess,
+                    const la::KrylovOptions& options, Eigen::VectorXd& x) {
+    const auto& prescribed = domain.conditions.pressure_flags();
+    operator_.apply(x, product_);
+    round_off = std::max(round_off, la::norm(product_));
+    b -= product_;
+    start_ = guess;
+    for (std::size_t i = 0; i < prescribed.size(); ++i)
+      if (prescribed[i]) b[static_cast<Eigen::Index>(i)] = start_[static_cast<Eigen::Index>(i)] = 0;
+    const Eigen::VectorXd mass = domain.inverse_mass.cwiseInverse();
+    const bool enclosed = !domain.conditions.any_pressure();
+    if (enclosed) b -= (b.sum() / mass.sum()) * mass;
+    la::KrylovOptions with_floor = options;
+    with_floor.absolute = 1e-14 * round_off;
+    const SolveReport report = la::cg(operator_, cholesky_, b, start_, with_floor);
+    if (enclosed) start_.array() -= start_.dot(mass) / mass.sum();
+    x += start_;
+    return report;
+  }
+
+  /// From the predicted velocity u (3 x nodes) and the pressure p to those at the end of the pass.
+  /// increment: the prescribed increments of p, 0 at the other nodes. force: [N/m3] or no columns.
+  /// rotational: chi mu [Pa s]. u of the nodes with prescribed velocity stays.
+  SolveReport correct(const Domain& domain, const Points<3>& force, double rotational,
+                      const la::KrylovOptions& options, const Eigen::VectorXd& guess,
+                      Eigen::VectorXd increment, Points<3>& u, Eigen::VectorXd& p) {
+    divergence(domain, u);
+    stabilise(domain, p, force);
+    if (!domain.conditions.any_pressure() && leaks(domain, u)) return {Status::diverged, 0, 1};
+    right_ = -(divergence_ + stabilised_);
+    const SolveReport report =
+        solve(domain, right_, la::norm(divergence_) + la::norm(stabilised_), guess, options, increment);
+    operator_.apply_all(increment, product_);
+    reaction_ = right_ - product_;  // the flux that leaves at nodes where the pressure is prescribed
+    predicted_flux_.clear();
+    for (const Condition& c : domain.conditions.list())
+      predicted_flux_.push_back(Conditions::flux(domain.position, c.faces, u));
+    // u = u* - gamma M_L^-1 int N grad dp
+    gradient(domain, increment);
+    const auto& fixed = domain.conditions.velocity_flags();
+    for (Eigen::Index i = 0; i < u.cols(); ++i)
+      if (!fixed[static_cast<std::size_t>(i)]) u.col(i) -= gamma_ * domain.inverse_mass[i] * gradient_.col(i);
+    p += increment - rotational * domain.inverse_mass.cwiseProduct(divergence_);
+    return report;
+  }
+
+  /// Fluxes after correct(): u at the end of the step, w of the grid (3 x nodes).
+  [[nodiscard]] MassBalance balance(const Domain& domain, const Points<3>& u, const Points<3>& w) const {
+    MassBalance mass;
+    std::vector<char> seen(static_cast<std::size_t>(u.cols()), 0);
+    for (std::size_t k = 0; k < predicted_flux_.size(); ++k) {
+      const Condition& c = domain.conditions.list()[k];
+      mass.unbalanced += Conditions::flux(domain.position, c.faces, u);
+      double q = predicted_flux_[k];  // int N_i u.n = int N_i u*.n + the reaction of row i, summed
+      if (c.kind == Kind::pressure)
+        for (const Index n : c.nodes)
+          if (!std::exchange(seen[static_cast<std::size_t>(n)], 1)) q += reaction_[n];
+      mass.discrete += q;
+      if (c.kind == Kind::wall)
+        mass.swept += Conditions::flux(domain.position, c.faces, w);
+      else
+        (q < 0 ? mass.inflow : mass.outflow) += std::abs(q);
+    }
+    return mass;
+  }
+
+ private:
+  void prepare(const Domain& domain) {
+    operator_.assemble(domain.pattern, domain.cells, domain.tets, tau_, gamma_,
+                       domain.conditions.pressure_flags());
+    cholesky_.compute(operator_.preconditioning());
+  }
+
+  /// divergence_ = int N div u.
+  void divergence(const Domain& domain, const Points<3>& u) {
+    divergence_.setZero(u.cols());
+    domain.pattern.for_each_cell([&](Index e) {
+      const fem::P1Tet& tet = domain.tets[e];
+      const double q = tet.volume / 4 * nodal<3>(u, domain.cells, e).cwiseProduct(tet.grad).sum();
+      for (int i = 0; i < 4; ++i) divergence_[domain.cells(i, e)] += q;
+    });
+  }
+
+  /// gradient_ = int N grad p.
+  void gradient(const Domain& domain, const Eigen::VectorXd& p) {
+    gradient_.setZero(3, p.size());
+    domain.pattern.for_each_cell([&](Index e) {
+      const fem::P1Tet& tet = domain.tets[e];
+      const Vec3 g = tet.volume / 4 * (tet.grad * nodal(p, domain.cells, e));
+      for (int i = 0; i < 4; ++i) gradient_.col(domain.cells(i, e)) += g;
+    });
+  }
+
+  /// stabilised_ = int tau grad N . (r - P r), r = grad p - force.
+  void stabilise(const Domain& domain, const Eigen::VectorXd& p, const Points<3>& force) {
+    const auto residual = [&](Index e) -> Vec3 {
+      Vec3 r = domain.tets[e].grad * nodal(p, domain.cells, e);
+      if (force.cols() > 0) r -= nodal<3>(force, domain.cells, e).rowwise().mean();
+      return r;
+    };
+    gradient_.setZero(3, p.size());
+    domain.pattern.for_each_cell([&](Index e) {
+      const Vec3 r = tau_[static_cast<std::size_t>(e)] * domain.tets[e].volume / 4 * residual(e);
+      for (int i = 0; i < 4; ++i) gradient_.col(domain.cells(i, e)) += r;
+    });
+    gradient_.array().rowwise() *= operator_.inverse_mass().transpose().array();
+    stabilised_.setZero(p.size());
+    domain.pattern.for_each_cell([&](Index e) {
+      const Vec3 smooth = nodal<3>(gradient_, domain.cells, e).rowwise().mean();
+      const Vec3 r = tau_[static_cast<std::size_t>(e)] * domain.tets[e].volume * (residual(e) - smooth);
+      for (int i = 0; i < 4; ++i) stabilised_[domain.cells(i, e)] += domain.tets[e].grad.col(i).dot(r);
+    });
+  }
+
+  /// Without prescribed pressure what flows in must flow out, up to the error of the boundary data.
+  [[nodiscard]] bool leaks(const Domain& domain, const Points<3>& u) const {
+    constexpr double tolerated = 0.05;  // nodal values of a smooth divergence-free field on a coarse mesh
+    double through = 0;
+    for (const Condition& c : domain.conditions.list())
+      for (Eigen::Index f = 0; f < c.faces.cols(); ++f)
+        through += std::abs(Conditions::flux(domain.position, c.faces.col(f), u));
+    return !(std::abs(divergence_.sum()) <= tolerated * through);
+  }
+
+  PressureOperator operator_;
+  la::IncompleteCholesky cholesky_;
+  std::vector<double> tau_;  // [m3 s/kg] a cell
+  double gamma_ = 0;         // dt / (rho c0) [m3 s/kg]
+  Eigen::VectorXd divergence_, stabilised_, right_, product_, start_, reaction_;
+  Points<3> gradient_;
+  std::vector<double> predicted_flux_;  // of u* through each patch [m3/s]
+};
+
+}  // namespace tunica::fluid
