@@ -34,17 +34,19 @@ class HandleSearch {
     double length = std::numeric_limits<double>::infinity();
   };
 
-  /// A non-separating cycle that is the shortest through each of a few of its nodes; none on a sphere.
-  [[nodiscard]] Cycle shortest(Index root) {
+  /// A non-separating cycle: of those through the roots the shortest, moved on to the shortest through
+  /// its own nodes while that gets shorter; none on a sphere.
+  [[nodiscard]] Cycle shortest(const std::vector<Index>& roots) {
     twin_ = mesh::twins(surface_.cells, surface_.node_count());
     around_ = mesh::cells_of_nodes(surface_.cells, surface_.node_count());
     Cycle best;
-    constexpr int most_restarts = 8;
-    for (int n = 0; n < most_restarts; ++n) {
-      Cycle found = through(root);
-      if (!(found.length < best.length * (1 - 1e-9))) break;
-      best = std::move(found);
-      root = best.nodes[best.nodes.size() / 2];
+    for (const Index root : roots)
+      if (Cycle c = through(root); c.length < best.length) best = std::move(c);
+    constexpr int most_moves = 16;
+    for (int n = 0; n < most_moves && !best.nodes.empty(); ++n) {
+      Cycle c = through(best.nodes[best.nodes.size() / 2]);
+      if (!(c.length < best.length * (1 - 1e-9))) break;
+      best = std::move(c);
     }
     return best;
   }
@@ -200,9 +202,14 @@ class HandleSearch {
   detail::HandleSearch search(s);
   for (Index c = 0; c < static_cast<Index>(t.components.size()); ++c) {
     const Index genus = t.components[static_cast<std::size_t>(c)].genus();
-    const auto first = std::find(t.component_of.begin(), t.component_of.end(), c) - t.component_of.begin();
+    std::vector<Index> own;
+    for (Index f = 0; f < s.cell_count(); ++f)
+      if (t.component_of[static_cast<std::size_t>(f)] == c) own.push_back(s.cells(0, f));
+    constexpr std::size_t most_roots = 16;  // spread over the component, so that the thin part is near one
+    std::vector<Index> roots;
+    for (std::size_t r = 0; r < most_roots; ++r) roots.push_back(own[r * own.size() / most_roots]);
     for (Index g = 0; g < genus && found.size() < limit; ++g) {
-      const auto cycle = search.shortest(s.cells(0, first));
+      const auto cycle = search.shortest(roots);
       if (cycle.nodes.empty()) break;
       Handle h{.length = cycle.length};
       for (const Index n : cycle.nodes)
