@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+// Edges of the surface that the tetrahedra lack are brought in: by flips along the segment, and
+// where these end by Steiner points where it meets a face or an edge, which always succeeds.
+#pragma once
+
+#include "tunica/meshing/cavity_flips.hpp"
+#include "tunica/meshing/front_surface.hpp"
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace tunica::meshing {
+
+/// A part of the surface that could not be recovered: another arrangement of points is tried.
+struct RecoveryFailure {
+  Vec3 place;
+  const char* what;
+};
+
+class FrontEdges {
+ public:
+  FrontEdges(TetComplex& complex, FrontSurface& surface) : c_(complex), s_(surface), flips_(complex) {}
+
+  Index steiner = 0;  // points put on edges
+
+  /// Brings in the edge; with_points: Steiner points may be used. False: it is still missing.
+  enum class Means { flips, points };
+  bool recover(Index edge, Means means) {
+    const auto [a, b, triangles] = s_.edges[at(edge)];
+    if (s_.chain.count(edge) > 0) return true;
+    for (int turn = 0; turn < 2; ++turn)
+      if (turn == 0 ? flip_along(a, b) : flip_along(b, a)) return true;
+    if (means == Means::flips) return false;
+    Index u = a;
+    for (int step = 0; step < longest_chain; ++step) {
+      const Hit hit = first_hit(u, b);
+      if (hit.kind == Hit::at_node && hit.node == b) {
+        if (u != a) s_.lock_piece(u, b);
+        return true;
+      }
+      if (hit.kind == Hit::at_node || hit.kind == Hit::nothing)
+        throw RecoveryFailure{c_.point(u), "an edge runs into a node"};
+      const Index p = split(u, b, hit);
+      if (p < 0) throw RecoveryFailure{c_.point(u), "an edge cannot be split off"};
+      s_.chain[edge].push_back(p);
+      s_.own(p, {edge, -1});
+      s_.lock_piece(u, p);
+      ++steiner;
+      u = p;
+      if (flip_along(u, b)) {
+        s_.lock_piece(u, b);
+        return true;
+      }
+    }
+    throw RecoveryFailure{c_.point(a), "an edge needs too many points"};
+  }
+
+ private:
+  static constexpr int longest_chain = 1000, most_flips = 60;
+
+  struct Hit {
+    enum Kind { nothing, at_node, at_edge, at_face } kind = nothing;
+    Index tet = -1;
+    int face_index = -1;
+    Index node = -1;       // kind node
+    Index x = -1, y = -1;  // kind edge
+  };
+
+  template <class I>
+  [[nodiscard]] static std::size_t at(I i) {
+    return static_cast<std::size_t>(i);
+  }
+
+  /// Where the segment from u to b leaves the star of u.
+  [[nodiscard]] Hit first_hit(Index u, Index b) {
+    c_.star(u, star_);
+    for (const Index t : star_)
+      if (c_.has(t, b)) return {Hit::at_node, t, -1, b, -1, -1};
+    for (const Index t : star_) {
+      const int f = c_.local(t, u);
+      const Triple n = c_.face(t, f);  // it turns about the axis from u outward
+      std::array<int, 3> side{};
+      int zeros = 0, negative = 0;
+      for (std::size_t k = 0; k < 3 && negative == 0; ++k) {
+        const double v = c_.orient(u, b, n[k], n[(k + 1) % 3]);
+        side[k] = (v > 0) - (v < 0);
+        zeros += side[k] == 0, negative += side[k] < 0;
+      }
+      if (negative > 0) continue;
+      if (zeros == 0) return {Hit::at_face, t, f, -1, -1, -1};
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (zeros == 1 && side[k] == 0) return {Hit::at_edge, t, f, -1, n[k], n[(k + 1) % 3]};
+        if (zeros == 2 && side[k] != 0) return {Hit::at_node, t, f, n[(k + 2) % 3], -1, -1};
+      }
+    }
+    return {};
+  }
+
+  /// Flips what the segment meets, as long as that goes. True: the edge (u, b) is there.
+  bool flip_along(Index u, Index b) {
+    for (int count = 0; count < most_flips; ++count) {
+      const Hit hit = first_hit(u, b);
+      if (hit.kind == Hit::at_node) return hit.node == b;
+      if (hit.kind == Hit::nothing) return false;
+      const bool changed = hit.kind == Hit::at_edge ? remove(hit.tet, hit.x, hit.y) : flip_face(hit, u);
+      if (!changed) return false;
+    }
+    return false;
+  }
+
+  bool flip_face(const Hit& hit, Index u) {
+    const Side s = c_.across(hit.tet, hit.face_index);
+    if (s < 0 || c_.mark(hit.tet, hit.face_index) >= 0) return false;
+    if (flips_.face_to_edge(hit.tet, hit.face_index)) return true;
+    const Triple n = c_.face(hit.tet, hit.face_index);
+    const Index w = c_.nodes(s / 4)[at(s % 4)];
+    for (std::size_t k = 0; k < 3; ++k)  // a reflex edge stands in the way
+      if (!(c_.orient(u, w, n[k], n[(k + 1) % 3]) > 0) && remove(hit.tet, n[k], n[(k + 1) % 3])) return true;
+    return false;
+  }
+
+  bool remove(Index t, Index x, Index y) {
+    if (s_.locked(x, y)) return false;
+    return flips_.remove_edge(t, x, y, 0, [](Index, Index) { return true; });
+  }
+
+  /// A new point where the segment meets a face or an edge, -1: a part of the surface is there.
+  Index split(Index u, Index b, const Hit& hit) {
+    const Triple n = c_.face(hit.tet, hit.face_index);
+    if (hit.kind == Hit::at_edge) return split_edge(u, b, hit.tet, hit.x, hit.y);
+    if (c_.mark(hit.tet, hit.face_index) >= 0) return -1;
+    const double du = std::abs(c_.orient(n[0], n[1], n[2], u)), db = std::abs(c_.orient(n[0], n[1], n[2], b));
+    const Index p = c_.add_point(c_.point(u) + du / (du + db) * (c_.point(b) - c_.point(u)));
+    if (flips_.split_face(hit.tet, hit.face_index, p)) return p;
+    drop_last_point();
+    for (std::size_t k = 0; k < 3; ++k) {  // the meeting point is on an edge to within rounding
+      const Index q = split_edge(u, b, hit.tet, n[k], n[(k + 1) % 3]);
+      if (q >= 0) return q;
+    }
+    return -1;
+  }
+
+  Index split_edge(Index u, Index b, Index t, Index x, Index y) {
+    if (s_.locked(x, y)) return -1;
+    // The point of (x, y) nearest to the line through u and b.
+    const Vec3 d = c_.point(b) - c_.point(u), e = c_.point(y) - c_.point(x), r = c_.point(x) - c_.point(u);
+    const double dd = d.squaredNorm(), de = d.dot(e), ee = e.squaredNorm(), nn = dd * ee - de * de;
+    const double s = nn > 0 ? (de * d.dot(r) - dd * e.dot(r)) / nn : 0.5;
+    for (const double margin : {1e-12, 1e-6, 1e-3, 0.1}) {
+      const double at_edge = std::clamp(s, margin, 1 - margin);
+      if (std::abs(at_edge - s) > 0.01) continue;
+      const Index p = c_.add_point(c_.point(x) + at_edge * e);
+      if (flips_.split_edge(t, x, y, p)) return p;
+      drop_last_point();
+    }
+    return -1;
+  }
+
+  void drop_last_point() { c_.points.pop_back(), c_.tet_of.pop_back(); }
+
+  TetComplex& c_;
+  FrontSurface& s_;
+  CavityFlips flips_;
+  std::vector<Index> star_;
+};
+
+}  // namespace tunica::meshing

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// Steiner points leave the surface: each is moved inward, and the hole that opens between it and
+// the surface is closed by a fan over the triangulation without it. A short enough move always works.
+#pragma once
+
+#include "tunica/meshing/cavity_polygon.hpp"
+#include "tunica/meshing/front_edges.hpp"
+#include "tunica/meshing/front_surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace tunica::meshing {
+
+/// Works on the inside alone: the border of the complex is the surface in pieces.
+class FrontRelease {
+ public:
+  FrontRelease(TetComplex& complex, FrontSurface& surface) : c_(complex), s_(surface) {}
+
+  /// Moves all Steiner points off, those on faces first. RecoveryFailure when one cannot move.
+  void run() {
+    std::vector<Index> nodes;
+    for (const auto& [node, owner] : s_.owners())
+      if (owner.face >= 0) nodes.push_back(node);
+    for (const auto& [node, owner] : s_.owners())
+      if (owner.edge >= 0) nodes.push_back(node);
+    for (const Index node : nodes) release(node);
+  }
+
+ private:
+  static constexpr int halvings = 45, most_corners = 200;
+
+  template <class I>
+  [[nodiscard]] static std::size_t at(I i) {
+    return static_cast<std::size_t>(i);
+  }
+
+  /// A loop of nodes around the point on one triangle of the surface; it turns as the surface does.
+  struct Loop {
+    Index face;
+    std::vector<Index> nodes;
+  };
+
+  void release(Index node) {
+    const Vec3 origin = c_.point(node);
+    find_loops(node, origin);
+    std::vector<Vec3> ways;
+    Vec3 inward = Vec3::Zero(), middle = Vec3::Zero();
+    double reach = 0;
+    for (const Loop& loop : loops_) inward -= normal(loop.face);
+    int count = 0;
+    for (const Index t : star_)
+      for (const Index n : c_.nodes(t)) {
+        if (n == node) continue;
+        middle += c_.point(n) - origin, ++count;
+        reach = std::max(reach, (c_.point(n) - origin).norm());
+      }
+    middle /= count;
+    if (inward.norm() > 0) inward *= 0.5 * reach / inward.norm();
+    ways = {middle, Vec3(0.5 * (middle + inward)), inward};
+    for (const Index t : star_) {  // towards the tetrahedra themselves, for narrow wedges
+      Vec3 m = Vec3::Zero();
+      for (const Index n : c_.nodes(t)) m += 0.25 * (c_.point(n) - origin);
+      if (ways.size() < 40) ways.push_back(m);
+    }
+    double step = 1;
+    for (int i = 0; i < halvings; ++i, step *= 0.5) {
+      for (const Vec3& way : ways)
+        if (close(node, Vec3(origin + step * way))) return;
+    }
+    c_.points[at(node)] = origin;
+    throw RecoveryFailure{origin, "a point cannot leave the surface"};
+  }
+
+  [[nodiscard]] Vec3 normal(Index f) const {
+    const Triple& t = s_.triangles[at(f)];
+    return (c_.point(t[1]) - c_.point(t[0])).cross(c_.point(t[2]) - c_.point(t[0])).normalized();
+  }
+
+  /// The border faces at the node, chained: one loop for a point on a face, two paths for one on an
+  /// edge, which the edge closes.
+  void find_loops(Index node, const Vec3& place) {
+    c_.star(node, star_);
+    std::map<Index, std::map<Index, Index>> next;  // per triangle: from node to node around
+    for (const Index t : star_)
+      for (int f = 0; f < 4; ++f) {
+        if (c_.across(t, f) >= 0 || c_.nodes(t)[at(f)] == node) continue;
+        const Triple n = c_.face(t, f);
+        std::size_t i = 0;
+        while (n[i] != node) ++i;
+        next[c_.mark(t, f)][n[(i + 1) % 3]] = n[(i + 2) % 3];
+      }
+    loops_.clear();
+    for (auto& [face, steps] : next) {
+      Index start = steps.begin()->first;
+      for (const auto& [from, to] : steps) {  // the start of a path is nobody's end
+        const bool is_end = std::any_of(steps.begin(), steps.end(),
+                                        [from = from](const auto& s) { return s.second == from; });
+        if (!is_end) start = from;
+      }
+      Loop loop{face, {start}};
+      Index n = start;
+      std::size_t used = 0;
+      for (; used < steps.size(); ++used) {
+        const auto it = steps.find(n);
+        if (it == steps.end()) break;
+        n = it->second;
+        if (n != start) loop.nodes.push_back(n);
+      }
+      if (used != steps.size() || loop.nodes.size() < 3 || loop.nodes.size() > most_corners)
+        throw RecoveryFailure{place, "the surface around a point is not a disc"};
+      loops_.push_back(std::move(loop));
+    }
+  }
+
+  /// Tries the new place: the star and the fans over the loops must have positive volumes.
+  bool close(Index node, const Vec3& x) {
+    const Vec3 before = c_.point(node);
+    c_.points[at(node)] = x;
+    fresh_.clear();
+    bool valid = true;
+    for (const Index t : star_) {
+      valid = valid && c_.orient(c_.nodes(t)) > 0;
+      fresh_.push_back(c_.nodes(t));
+    }
+    faces_.clear();
+    for (std::size_t l = 0; valid && l < loops_.size(); ++l) {
+      const Loop& loop = loops_[l];
+      const auto quality = [&](int i, int k, int j) {
+        return sine_quality(x, c_.point(loop.nodes[at(i)]), c_.point(loop.nodes[at(k)]),
+                            c_.point(loop.nodes[at(j)]));
+      };
+      valid = polygon_.triangulate(static_cast<int>(loop.nodes.size()), 0, quality) > 0;
+      for (const auto& [i, k, j] : polygon_.triangles) {
+        const Triple tri{loop.nodes[at(i)], loop.nodes[at(k)], loop.nodes[at(j)]};
+        fresh_.push_back({node, tri[0], tri[1], tri[2]});
+        faces_.push_back({tri, loop.face});
+      }
+    }
+    if (!valid) {
+      c_.points[at(node)] = before;
+      return false;
+    }
+    c_.replace(star_, fresh_, open_);
+    for (const Side s : open_)
+      for (const auto& [tri, face] : faces_) {
+        const Quad& n = c_.nodes(s / 4);
+        if (n[at(s % 4)] == node && c_.has(s / 4, tri[0]) && c_.has(s / 4, tri[1]) && c_.has(s / 4, tri[2]))
+          c_.set_mark(s, face);
+      }
+    return true;
+  }
+
+  struct NewFace {
+    Triple nodes;
+    Index mark;
+  };
+  TetComplex& c_;
+  FrontSurface& s_;
+  CavityPolygon polygon_;
+  std::vector<Index> star_;
+  std::vector<Loop> loops_;
+  std::vector<Quad> fresh_;
+  std::vector<NewFace> faces_;
+  std::vector<Side> open_;
+};
+
+}  // namespace tunica::meshing

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// The surface as the filler sees it: its edges, which of them the tetrahedra already have, and the
+// Steiner points that edges and faces received on the way. Open or non-manifold ones are refused.
+#pragma once
+
+#include "tunica/core/error.hpp"
+#include "tunica/core/types.hpp"
+#include "tunica/meshing/tet_complex.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tunica::meshing {
+
+[[nodiscard]] inline std::string place_text(const Vec3& x) {
+  const auto number = [](double v) {
+    std::string s = std::to_string(v);
+    return s;
+  };
+  return "(" + number(x[0]) + ", " + number(x[1]) + ", " + number(x[2]) + ")";
+}
+
+class FrontSurface {
+ public:
+  struct Edge {
+    Index a, b;                              // a < b
+    std::array<Index, 2> triangles{-1, -1};  // the one that runs from a to b, the one from b to a
+  };
+  struct Owner {
+    Index edge = -1, face = -1;
+  };
+
+  std::vector<Triple> triangles;
+  std::vector<Edge> edges;                           // sorted by (a, b)
+  std::vector<std::array<Index, 3>> triangle_edges;  // edge i runs from corner i to corner i + 1
+  Index nodes = 0;
+  std::map<Index, std::vector<Index>> chain;  // Steiner points of an edge, in order from a to b
+
+  /// MeshError when a triangle is degenerate, an edge has not exactly two triangles of opposite
+  /// sense, a node has two fans or none.
+  FrontSurface(const Points<3>& points, const Connectivity<3>& faces)
+      : nodes(static_cast<Index>(points.cols())) {
+    if (faces.cols() == 0) throw MeshError("the surface has no triangles");
+    if (!points.allFinite()) throw MeshError("a node of the surface is not finite");
+    triangles.resize(at(faces.cols()));
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      for (int i = 0; i < 3; ++i) {
+        const Index n = faces(i, static_cast<Eigen::Index>(t));
+        if (n < 0 || n >= nodes)
+          throw MeshError("triangle " + std::to_string(t) + " of the surface has node " + std::to_string(n) +
+                          ", which does not exist");
+        triangles[t][at(i)] = n;
+      }
+      refuse_degenerate(t, points);
+    }
+    find_edges(points);
+    find_fans(points);
+  }
+
+  /// The edge between two nodes of the surface, -1: none.
+  [[nodiscard]] Index edge_between(Index a, Index b) const {
+    if (a > b) std::swap(a, b);
+    if (b >= nodes) return -1;
+    for (Index e = first_edge_[at(a)]; e < first_edge_[at(a) + 1]; ++e)
+      if (edges[at(e)].b == b) return e;
+    return -1;
+  }
+  /// The triangle with these three nodes, -1: none.
+  [[nodiscard]] Index triangle_of(const Triple& n) const {
+    const Index e = edge_between(n[0], n[1]);
+    if (e < 0) return -1;
+    for (const Index t : edges[at(e)].triangles)
+      for (const Index v : triangles[at(t)])
+        if (v == n[2]) return t;
+    return -1;
+  }
+
+  /// Must the complex keep the edge (a, b)?
+  [[nodiscard]] bool locked(Index a, Index b) const {
+    return edge_between(a, b) >= 0 || pieces_.count({std::min(a, b), std::max(a, b)}) > 0;
+  }
+  void lock_piece(Index a, Index b) { pieces_.insert({std::min(a, b), std::max(a, b)}); }
+
+  void own(Index node, const Owner& owner) { owners_[node] = owner; }
+  [[nodiscard]] Owner owner(Index node) const {
+    if (node < nodes) return {};
+    const auto it = owners_.find(node);
+    return it == owners_.end() ? Owner{} : it->second;
+  }
+  [[nodiscard]] const std::map<Index, Owner>& owners() const { return owners_; }
+  void disown(Index node) { owners_.erase(node); }
+
+  /// Is the node a corner of triangle f or a Steiner point on it or on its edges?
+  [[nodiscard]] bool on(Index node, Index f) const {
+    const Triple& t = triangles[at(f)];
+    if (node < nodes) return node == t[0] || node == t[1] || node == t[2];
+    const Owner o = owner(node);
+    if (o.face >= 0) return o.face == f;
+    const auto& e = triangle_edges[at(f)];
+    return o.edge >= 0 && (o.edge == e[0] || o.edge == e[1] || o.edge == e[2]);
+  }
+  [[nodiscard]] bool split(Index f) const {
+    for (const Index e : triangle_edges[at(f)])
+      if (chain.count(e) > 0) return true;
+    return false;
+  }
+
+ private:
+  template <class I>
+  [[nodiscard]] static std::size_t at(I i) {
+    return static_cast<std::size_t>(i);
+  }
+
+  void refuse_degenerate(std::size_t t, const Points<3>& points) const {
+    const Vec3 a = points.col(triangles[t][0]), b = points.col(triangles[t][1]),
+               c = points.col(triangles[t][2]);
+    for (int k = 0; k < 3; ++k) {
+      const auto flat = [&](const Vec3& x) { return Point<2>(x[(k + 1) % 3], x[(k + 2) % 3]); };
+      if (orient2d(flat(a), flat(b), flat(c)) != 0) return;
+    }
+    throw MeshError("triangle " + std::to_string(t) + " of the surface has no area, at " + place_text(a));
+  }
+
+  void find_edges(const Points<3>& points) {
+    struct Half {
+      Index a, b, triangle, corner;
+      bool forward;
+    };
+    std::vector<Half> halves;
+    halves.reserve(3 * triangles.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Index a = triangles[t][i], b = triangles[t][(i + 1) % 3];
+        halves.push_back(
+            {std::min(a, b), std::max(a, b), static_cast<Index>(t), static_cast<Index>(i), a < b});
+      }
+    std::sort(halves.begin(), halves.end(), [](const Half& x, const Half& y) {
+      return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.triangle < y.triangle;
+    });
+    triangle_edges.resize(triangles.size());
+    for (std::size_t i = 0; i < halves.size();) {
+      std::size_t end = i;
+      while (end < halves.size() && halves[end].a == halves[i].a && halves[end].b == halves[i].b) ++end;
+      const Vec3 middle = 0.5 * (points.col(halves[i].a) + points.col(halves[i].b));
+      if (end - i == 1)
+        throw MeshError("the surface is open: an edge has one triangle, at " + place_text(middle));
+      if (end - i > 2)
+        throw MeshError("the surface is not manifold: an edge has " + std::to_string(end - i) +
+                        " triangles, at " + place_text(middle));
+      if (halves[i].forward == halves[i + 1].forward)
+        throw MeshError("the surface is not oriented: two neighbours have opposite senses, at " +
+                        place_text(middle));
+      Edge e{halves[i].a, halves[i].b, {}};
+      for (std::size_t k = i; k < end; ++k) {
+        e.triangles[halves[k].forward ? 0 : 1] = halves[k].triangle;
+        triangle_edges[at(halves[k].triangle)][at(halves[k].corner)] = static_cast<Index>(edges.size());
+      }
+      edges.push_back(e);
+      i = end;
+    }
+    first_edge_.assign(at(nodes) + 1, 0);
+    for (const Edge& e : edges) ++first_edge_[at(e.a) + 1];
+    for (std::size_t n = 0; n < at(nodes); ++n) first_edge_[n + 1] += first_edge_[n];
+  }
+
+  /// Every node must have exactly one fan of triangles.
+  void find_fans(const Points<3>& points) const {
+    std::vector<Index> count(at(nodes), 0), seed(at(nodes), -1);
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      for (const Index n : triangles[t]) ++count[at(n)], seed[at(n)] = static_cast<Index>(t);
+    for (Index n = 0; n < nodes; ++n) {
+      if (count[at(n)] == 0)
+        throw MeshError("node " + std::to_string(n) + " of the surface belongs to no triangle");
+      Index fan = 0, t = seed[at(n)];
+      do {  // over the edge that leaves n, to the triangle on its other side
+        std::size_t i = 0;
+        while (triangles[at(t)][i] != n) ++i;
+        const auto& pair = edges[at(triangle_edges[at(t)][i])].triangles;
+        t = pair[0] == t ? pair[1] : pair[0];
+        ++fan;
+      } while (t != seed[at(n)] && fan <= count[at(n)]);
+      if (fan != count[at(n)])
+        throw MeshError("the surface is not manifold: it touches itself at node " + std::to_string(n) +
+                        ", at " + place_text(points.col(n)));
+    }
+  }
+
+  std::vector<Index> first_edge_;
+  std::set<std::pair<Index, Index>> pieces_;
+  std::map<Index, Owner> owners_;
+};
+
+}  // namespace tunica::meshing

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Points of a body-centred cubic lattice inside a surface, graded by an octree: its tetrahedra have
+// dihedral angles of 60 and 90 degrees, so only those near the surface ever need repair.
+#pragma once
+
+#include "tunica/core/types.hpp"
+#include "tunica/meshing/size_field.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tunica::meshing {
+
+struct LatticeOptions {
+  double edge = 1.3;          // mean edge of the lattice over the local size h(x)
+  double clearance = 0.7;     // distance to the surface over the size of its triangles there
+  Vec3 shift = Vec3::Zero();  // of the origin, in lattice cells
+};
+
+/// Mean over the 6 + 8 edges at a node: 2 x a and 4 x a sqrt(3)/2 a tetrahedron.
+inline constexpr double lattice_mean_edge = 0.911;
+
+/// The points; `size` gives the target edge length, `surface` the distances.
+template <SizeField Size>
+class Lattice {
+ public:
+  Lattice(const SurfaceSize& surface, const Size& size, const LatticeOptions& options)
+      : surface_(surface), size_(size), options_(options) {}
+
+  [[nodiscard]] std::vector<Vec3> points() {
+    // The leaves halve a root cube; at the median size they have exactly the wanted edge. The unit
+    // has few bits, so that coordinates are exact.
+    const Box& box = surface_.box();
+    const double leaf = cell_edge(median_size());
+    unit_ =
+        rounded(leaf / (2 * finest), std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff()));
+    double extent = 2 * finest * unit_;
+    int level = finest_level + 1;
+    while (extent < 1.01 * (box.hi - box.lo).maxCoeff() + 2 * leaf && level < 40) extent *= 2, ++level;
+    origin_ = box.centre() + (leaf * options_.shift.array() - 0.5 * extent).matrix();
+    for (int k = 0; k < 3; ++k) origin_[k] = std::round(origin_[k] / unit_) * unit_;
+    subdivide({0, 0, 0}, std::int64_t{1} << level, false);
+    std::sort(found_.begin(), found_.end());
+    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    std::vector<Vec3> result;
+    for (const Key& k : found_)
+      if (std::isfinite(k[0])) result.push_back(place(k));
+    return result;
+  }
+
+ private:
+  using Key = std::array<std::int64_t, 3>;
+  static constexpr int finest_level = 7;  // halvings below the median leaf
+  static constexpr double finest = 1 << finest_level;
+
+  [[nodiscard]] Vec3 place(const Key& k) const {
+    return origin_ +
+           unit_ * Vec3(static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2]));
+  }
+  [[nodiscard]] double cell_edge(double h) const { return options_.edge * h / lattice_mean_edge; }
+
+  /// x with so few bits that multiples of it up to `large` are exact.
+  [[nodiscard]] static double rounded(double x, double large) {
+    int e = 0;
+    std::frexp(x, &e);
+    const double step = std::ldexp(1.0, e - 16);
+    static_cast<void>(large);
+    return std::max(std::round(x / step) * step, step);
+  }
+
+  [[nodiscard]] double median_size() const {
+    std::vector<double> h = surface_.node_sizes();
+    for (std::size_t i = 0; i < h.size(); ++i) h[i] = size_(surface_.node(static_cast<Index>(i)));
+    std::nth_element(h.begin(), h.begin() + static_cast<std::ptrdiff_t>(h.size() / 2), h.end());
+    return h[h.size() / 2];
+  }
+
+  /// Visits the cube [corner, corner + edge]; deep: wholly inside, far from the surface.
+  void subdivide(const Key& corner, std::int64_t edge, bool deep) {
+    const std::int64_t half = edge / 2;
+    const Key centre{corner[0] + half, corner[1] + half, corner[2] + half};
+    const Vec3 x = place(centre);
+    const double length = static_cast<double>(edge) * unit_, radius = 0.5 * std::sqrt(3.0) * length;
+    if (!deep) {
+      const auto near = surface_.nearest(x);
+      const double distance = near.distance;
+      if (!near.inside && distance > radius) return;
+      deep = near.inside && distance - radius > clearance(near.size, x);
+    }
+    const double wanted = cell_edge(size_(x));
+    if (length > std::sqrt(2.0) * wanted && half > 1) {
+      for (int i = 0; i < 8; ++i)
+        subdivide(
+            {corner[0] + (i & 1 ? half : 0), corner[1] + (i & 2 ? half : 0), corner[2] + (i & 4 ? half : 0)},
+            half, deep);
+      return;
+    }
+    offer(centre, deep);
+    for (int i = 0; i < 8; ++i)
+      offer({corner[0] + (i & 1 ? edge : 0), corner[1] + (i & 2 ? edge : 0), corner[2] + (i & 4 ? edge : 0)},
+            deep);
+  }
+
+  void offer(const Key& k, bool deep) {
+    if (!deep) {
+      const Vec3 x = place(k);
+      const auto near = surface_.nearest(x);
+      if (!near.inside || near.distance < clearance(near.size, x)) return;
+    }
+    found_.push_back(k);
+  }
+
+  [[nodiscard]] double clearance(double surface_size, const Vec3& x) const {
+    return options_.clearance * std::max(surface_size, size_(x) * options_.edge / 1.3);
+  }
+
+  const SurfaceSize& surface_;
+  const Size& size_;
+  LatticeOptions options_;
+  Vec3 origin_ = Vec3::Zero();
+  double unit_ = 1;
+  std::vector<Key> found_;
+};
+
+}  // namespace tunica::meshing
