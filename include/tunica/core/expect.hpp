@@ -14,9 +14,9 @@ struct ContractError : std::logic_error {
 }  // namespace tunica
 
 #if !defined(NDEBUG) || defined(TUNICA_CHECKED)
-#define TUNICA_EXPECT(condition, sentence)                                             \
-  do {                                                                                 \
-    if (!(condition)) throw ::tunica::ContractError(sentence " (" #condition ")");     \
+#define TUNICA_EXPECT(condition, sentence)                                         \
+  do {                                                                             \
+    if (!(condition)) throw ::tunica::ContractError(sentence " (" #condition ")"); \
   } while (false)
 #else
 #define TUNICA_EXPECT(condition, sentence) static_cast<void>(0)

@@ -63,9 +63,7 @@ struct Image {
     Voxel cell;
     Vec3 t, h;
 
-    [[nodiscard]] double factor(int corner, int a) const {
-      return (corner >> a & 1) != 0 ? t[a] : 1 - t[a];
-    }
+    [[nodiscard]] double factor(int corner, int a) const { return (corner >> a & 1) != 0 ? t[a] : 1 - t[a]; }
     [[nodiscard]] double weight(int corner) const {
       return factor(corner, 0) * factor(corner, 1) * factor(corner, 2);
     }

@@ -47,24 +47,18 @@ struct Quad4 {
 struct Tet4 {
   static constexpr int dim = 3, nodes = 4, vtk_type = 10;
   using Face = Tri3;
-  static constexpr std::array<std::array<int, 3>, 4> faces{  // face i is opposite to node i
-      {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-  static constexpr std::array<std::array<int, 2>, 6> edges{
-      {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+  static constexpr std::array<std::array<int, 3>, 4> faces{// face i is opposite to node i
+                                                           {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+  static constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 };
 
 struct Hex8 {
   static constexpr int dim = 3, nodes = 8, vtk_type = 12;
   using Face = Quad4;
-  static constexpr std::array<std::array<int, 4>, 6> faces{{{0, 3, 2, 1},
-                                                            {4, 5, 6, 7},
-                                                            {0, 1, 5, 4},
-                                                            {1, 2, 6, 5},
-                                                            {2, 3, 7, 6},
-                                                            {3, 0, 4, 7}}};
-  static constexpr std::array<std::array<int, 2>, 12> edges{{{0, 1}, {1, 2}, {2, 3}, {0, 3},
-                                                             {4, 5}, {5, 6}, {6, 7}, {4, 7},
-                                                             {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
+  static constexpr std::array<std::array<int, 4>, 6> faces{
+      {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
+  static constexpr std::array<std::array<int, 2>, 12> edges{
+      {{0, 1}, {1, 2}, {2, 3}, {0, 3}, {4, 5}, {5, 6}, {6, 7}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 };
 
 }  // namespace tunica::mesh

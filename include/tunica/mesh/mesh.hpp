@@ -25,9 +25,9 @@ struct Mesh {
   using cell_type = C;
   static constexpr int dim = Dim;
 
-  Points<Dim> nodes;              // Dim x nodes, in the unit of its source ([m] for the solvers)
-  Connectivity<C::nodes> cells;   // C::nodes x cells
-  std::vector<Index> region;      // one label a cell, an index of region_names; empty: one region
+  Points<Dim> nodes;             // Dim x nodes, in the unit of its source ([m] for the solvers)
+  Connectivity<C::nodes> cells;  // C::nodes x cells
+  std::vector<Index> region;     // one label a cell, an index of region_names; empty: one region
   std::vector<std::string> region_names;
   std::vector<Patch<typename C::Face>> patches;
 

@@ -129,7 +129,8 @@ class Octree {
     }
     std::array<std::pair<double, Index>, 8> order;  // nearest child first
     for (Index c = 0; c < n.children; ++c) {
-      std::pair<double, Index> entry{nodes_[static_cast<std::size_t>(n.child + c)].box.squared_distance(x), n.child + c};
+      std::pair<double, Index> entry{nodes_[static_cast<std::size_t>(n.child + c)].box.squared_distance(x),
+                                     n.child + c};
       Index at = c;
       for (; at > 0 && entry < order[static_cast<std::size_t>(at - 1)]; --at)
         order[static_cast<std::size_t>(at)] = order[static_cast<std::size_t>(at - 1)];
