@@ -1,66 +1,107 @@
 // SPDX-License-Identifier: MIT
-// Which regions of a surface are flat, and their planes.
+// Which regions of a surface are flat, and how that binds its nodes: in a plane, on a rim, at a corner.
 #pragma once
 
-#include "tunica/mesh/mesh.hpp"
-#include "tunica/mesh/triangle.hpp"
+#include "tunica/mesh/adjacency.hpp"
+#include "tunica/mesh/measures.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace tunica::meshing {
 
-/// A plane through a point with an outward unit normal.
-struct FlatRegion {
-  Vec3 point, normal;
-  double deviation = 0;  // largest distance of a node of the region from it [length]
+struct Plane {
+  Vec3 point, normal;  // unit normal
+
+  [[nodiscard]] double distance(const Vec3& x) const { return normal.dot(x - point); }
+  [[nodiscard]] Vec3 projected(const Vec3& x) const { return x - distance(x) * normal; }
 };
 
-[[nodiscard]] inline mesh::Triangle triangle_of(const mesh::Surface& surface, Index t) {
-  return {surface.nodes.col(surface.cells(0, t)), surface.nodes.col(surface.cells(1, t)),
-          surface.nodes.col(surface.cells(2, t))};
-}
+/// A region is flat when its nodes lie within this part of the bounding box's diagonal of one plane.
+inline constexpr double flat_tolerance = 1e-9;
 
-[[nodiscard]] inline std::size_t region_count(const mesh::Surface& surface) {
-  std::size_t count = std::max<std::size_t>(1, surface.region_names.size());
-  for (const Index r : surface.region) count = std::max(count, static_cast<std::size_t>(r) + 1);
-  return count;
-}
-
-/// One entry a region: empty where the region is curved, as region 0 (the wall) always is. A region
-/// is flat when its nodes lie within `tolerance` of the surface's size of the plane; the default
-/// takes coordinates of single precision for flat.
-[[nodiscard]] inline std::vector<std::optional<FlatRegion>> flat_regions(const mesh::Surface& surface,
-                                                                         double tolerance = 1e-6) {
-  const std::size_t count = region_count(surface);
-  std::vector<Vec3> area(count, Vec3::Zero()), moment(count, Vec3::Zero());
-  std::vector<double> size(count, 0), deviation(count, 0);
-  Box box;
-  for (Index t = 0; t < surface.cell_count(); ++t) {
-    const auto r = static_cast<std::size_t>(surface.region_of(t));
-    const auto triangle = triangle_of(surface, t);
-    area[r] += triangle.area_vector();
-    moment[r] += triangle.area() * triangle.centroid(), size[r] += triangle.area();
-    box.extend(triangle.box());
+/// The plane of each region of the surface, outward normal; none where it is curved or empty.
+[[nodiscard]] inline std::vector<std::optional<Plane>> flat_regions(const mesh::Surface& s) {
+  const auto regions = std::max<std::size_t>(1, s.region_names.size());
+  std::vector<Vec3> normal(regions, Vec3::Zero()), centre(regions, Vec3::Zero());
+  std::vector<double> area(regions, 0.0), off(regions, 0.0);
+  for (Index t = 0; t < s.cell_count(); ++t) {
+    const auto r = static_cast<std::size_t>(s.region_of(t));
+    const mesh::Triangle f = mesh::triangle(s, t);
+    normal[r] += f.area_vector();
+    area[r] += f.area();
+    centre[r] += f.area() * f.centroid();
   }
-  std::vector<std::optional<FlatRegion>> flat(count);
-  for (std::size_t r = 1; r < count; ++r)
-    if (size[r] > 0 && area[r].norm() > 0.5 * size[r])
-      flat[r] = {moment[r] / size[r], area[r].normalized(), 0};
-  for (Index t = 0; t < surface.cell_count(); ++t) {
-    auto& plane = flat[static_cast<std::size_t>(surface.region_of(t))];
-    if (!plane) continue;
+  for (std::size_t r = 0; r < regions; ++r)
+    if (area[r] > 0) centre[r] /= area[r], normal[r].normalize();
+  for (Index t = 0; t < s.cell_count(); ++t)
     for (int k = 0; k < 3; ++k) {
-      const Vec3 x = surface.nodes.col(surface.cells(k, t));
-      plane->deviation = std::max(plane->deviation, std::abs(plane->normal.dot(x - plane->point)));
+      const auto r = static_cast<std::size_t>(s.region_of(t));
+      off[r] = std::max(off[r], std::abs(normal[r].dot(s.nodes.col(s.cells(k, t)) - centre[r])));
+    }
+  const double tolerance = s.node_count() > 0 ? flat_tolerance * mesh::bounding_box(s.nodes).diagonal() : 0;
+  std::vector<std::optional<Plane>> planes(regions);
+  for (std::size_t r = 0; r < regions; ++r)
+    if (area[r] > 0 && off[r] <= tolerance) planes[r] = Plane{centre[r], normal[r]};
+  return planes;
+}
+
+/// How a node may move: anywhere, within the plane of its flat region, along the rim of one, or not at all.
+enum class Bond : std::uint8_t { none, plane, rim, corner };
+
+/// The bond of each node, with the flat region that binds it and the neighbours of a rim node on the rim.
+struct Bonds {
+  std::vector<Bond> bond;
+  std::vector<Index> region;                // of the plane; -1 without a bond
+  std::vector<std::array<Index, 2>> along;  // of a rim node
+
+  [[nodiscard]] Bond of(Index n) const { return bond[static_cast<std::size_t>(n)]; }
+};
+
+/// Bonds of the nodes of a closed surface. A rim node touches one flat region and one that is not flat; where
+/// two flat regions meet, or a rim is not a simple curve, nodes are corners.
+[[nodiscard]] inline Bonds bonds(const mesh::Surface& s, const std::vector<std::optional<Plane>>& planes) {
+  const auto n = static_cast<std::size_t>(s.node_count());
+  Bonds b{std::vector<Bond>(n, Bond::none), std::vector<Index>(n, -1),
+          std::vector<std::array<Index, 2>>(n, {-1, -1})};
+  std::vector<char> curved(n, 0);
+  for (Index t = 0; t < s.cell_count(); ++t) {
+    const Index r = s.region_of(t);
+    for (int k = 0; k < 3; ++k) {
+      const auto node = static_cast<std::size_t>(s.cells(k, t));
+      if (!planes[static_cast<std::size_t>(r)]) {
+        curved[node] = 1;
+      } else if (b.region[node] >= 0 && b.region[node] != r) {
+        b.bond[node] = Bond::corner;
+      } else {
+        b.region[node] = r;
+        if (b.bond[node] == Bond::none) b.bond[node] = Bond::plane;
+      }
     }
   }
-  for (auto& plane : flat)
-    if (plane && plane->deviation > tolerance * box.diagonal()) plane.reset();
-  return flat;
+  for (std::size_t i = 0; i < n; ++i)
+    if (b.bond[i] == Bond::plane && curved[i]) b.bond[i] = Bond::rim;
+  std::vector<Index> degree(n, 0);
+  const auto twin = mesh::twins(s.cells, s.node_count());
+  for (Index h = 0; h < static_cast<Index>(twin.size()); ++h) {
+    const Index g = twin[static_cast<std::size_t>(h)];
+    if (g >= 0 && s.region_of(h / 3) == s.region_of(g / 3)) continue;
+    const auto e = mesh::half_edge(s.cells, h);
+    const auto node = static_cast<std::size_t>(e.from);
+    if (b.bond[node] != Bond::rim) continue;
+    if (degree[node] < 2) b.along[node][static_cast<std::size_t>(degree[node])] = e.to;
+    ++degree[node];
+  }
+  // each rim edge is met once from either of its triangles: two edges, two half-edges that leave the node
+  for (std::size_t i = 0; i < n; ++i)
+    if (b.bond[i] == Bond::rim && (degree[i] != 2 || b.along[i][0] == b.along[i][1]))
+      b.bond[i] = Bond::corner;
+  return b;
 }
 
 }  // namespace tunica::meshing
