@@ -2,8 +2,8 @@
 // Dual contouring: topology for any signs, accuracy on smooth fields, sharp rims, exact planes.
 #include "tunica/meshing/dual_contouring.hpp"
 
-#include "support/surfaces.hpp"
-#include "tunica/mesh/triangle.hpp"
+#include "support/contours.hpp"
+#include "tunica/mesh/measures.hpp"
 #include "tunica/meshing/contour_triangles.hpp"
 #include "tunica/meshing/hermite_field.hpp"
 #include "tunica/meshing/hermite_surface.hpp"
@@ -25,7 +25,7 @@ namespace {
 
 template <class C>
 void check_manifold(const mesh::Mesh<C, 3>& m) {
-  const auto t = test::topology(m);
+  const auto t = test::contours::topology(m);
   CHECK(t.open_edges == 0);
   CHECK(t.wrong_edges == 0);
   CHECK(t.wrong_vertices == 0);
@@ -86,35 +86,42 @@ TEST_SUITE("unit") {
   TEST_CASE("meshing: dual contouring is closed and manifold on noise") {
     for (const bool integers : {false, true})
       for (std::uint64_t seed = 0; seed < 6; ++seed) {
-        const auto im = test::noise(16, integers, 1000 * seed);
-        const auto kept = test::at_least(im, 0);
+        const auto im = test::contours::noise(16, integers, 1000 * seed);
+        const auto kept = test::contours::at_least(im, 0);
         const auto quads = meshing::dual_contour(meshing::hermite_of_image(im, kept, 0));
         check_manifold(quads);
         const auto triangles = meshing::dual_contour_triangles(im, kept, 0);
         check_manifold(triangles);
         int degenerate = 0;
         for (Index t = 0; t < triangles.cell_count(); ++t)
-          if (!(meshing::triangle_of(triangles, t).area() > 0)) ++degenerate;
+          if (!(mesh::triangle(triangles, t).area() > 0)) ++degenerate;
         CHECK(degenerate == 0);
-        CHECK(test::enclosed_volume(quads) > 0);
+        CHECK(test::contours::enclosed_volume(quads) > 0);
       }
   }
 
   TEST_CASE("meshing: dual contouring closes a region at the border of the image in flat parts") {
-    const auto im = test::sampled(24, [](const Vec3& x) { return 0.31 - (x - Vec3(0.9, 0.5, 0.1)).norm(); });
-    const auto surface = meshing::dual_contour_triangles(im, test::at_least(im, 0), 0);
+    const auto im =
+        test::contours::sampled(24, [](const Vec3& x) { return 0.31 - (x - Vec3(0.9, 0.5, 0.1)).norm(); });
+    const auto surface = meshing::dual_contour_triangles(im, test::contours::at_least(im, 0), 0);
     check_manifold(surface);
-    CHECK(test::topology(surface).euler == 2);
+    CHECK(test::contours::topology(surface).euler == 2);
+    const auto contour = meshing::dual_contour_image(im, {}, 0);  // no mask keeps all
+    CHECK(contour.surface.nodes == surface.nodes);
+    REQUIRE(contour.borders.size() == 2);
+    CHECK(contour.borders[0].name == "border x1");
+    CHECK(contour.borders[0].area == doctest::Approx(std::numbers::pi * (0.31 * 0.31 - 0.01)).epsilon(0.2));
     REQUIRE(surface.region_names == std::vector<std::string>{"wall", "border x1", "border z0"});
     for (Index t = 0; t < surface.cell_count(); ++t)
       for (int k = 0; k < 3; ++k) {
         if (surface.region_of(t) == 1) CHECK(surface.nodes(0, surface.cells(k, t)) == 1.0);
         if (surface.region_of(t) == 2) CHECK(surface.nodes(2, surface.cells(k, t)) == 0.0);
       }
-    const auto sheet = test::sampled(8, [](const Vec3&) { return 1.0; });
-    CHECK(test::enclosed_volume(meshing::dual_contour_triangles(sheet, test::at_least(sheet, 0), 0)) ==
-          doctest::Approx(1).epsilon(1e-12));  // all inside: the image's own box
-    CHECK_THROWS_AS((void)meshing::dual_contour_triangles(sheet, test::at_least(sheet, 2), 2), MeshError);
+    const auto sheet = test::contours::sampled(8, [](const Vec3&) { return 1.0; });
+    CHECK_THROWS_AS((void)meshing::dual_contour_triangles(sheet, test::contours::at_least(sheet, 0), 0),
+                    MeshError);
+    CHECK_THROWS_AS((void)meshing::dual_contour_triangles(sheet, test::contours::at_least(sheet, 2), 2),
+                    MeshError);
   }
 
   TEST_CASE("meshing: dual contouring keeps the edges of a cut cylinder sharp") {
@@ -168,7 +175,7 @@ TEST_SUITE("unit") {
     const auto grid = meshing::hermite_of_surface(surface, {.spacing = h});
     const auto quads = meshing::dual_contour(grid, {.hold = -0.5});
     check_manifold(quads);
-    CHECK(test::topology(quads).euler == 2);
+    CHECK(test::contours::topology(quads).euler == 2);
     REQUIRE(quads.region_names == std::vector<std::string>{"wall", "inlet", "outlet"});
     const Vec3 axis = tilt.col(2);
     double flat = 0, rim = 0, wall = 0;
@@ -223,7 +230,7 @@ TEST_SUITE("convergence") {
         sum += d * d, largest = std::max(largest, std::abs(d));
       }
       rms.push_back(std::sqrt(sum / quads.node_count()));
-      volume.push_back(std::abs(test::enclosed_volume(quads) - 4.0 / 3 * std::numbers::pi * 0.064));
+      volume.push_back(std::abs(test::contours::enclosed_volume(quads) - 4.0 / 3 * std::numbers::pi * 0.064));
       MESSAGE("sphere, h = 1/" << n << ": vertices rms " << rms.back() * n << " h, max " << largest * n
                                << " h, volume error " << volume.back());
     }
@@ -239,16 +246,17 @@ TEST_SUITE("convergence") {
   TEST_CASE("meshing: dual contouring of the sampled bifurcation is within 0.02 h at 64") {
     std::vector<double> rms;
     for (const Index n : {32, 64}) {
-      const auto im = test::sampled(n, test::bifurcation);
-      const auto quads = meshing::dual_contour(meshing::hermite_of_image(im, test::at_least(im, 0), 0));
+      const auto im = test::contours::sampled(n, test::contours::bifurcation);
+      const auto quads =
+          meshing::dual_contour(meshing::hermite_of_image(im, test::contours::at_least(im, 0), 0));
       check_manifold(quads);
-      CHECK(test::topology(quads).euler == 2);
+      CHECK(test::contours::topology(quads).euler == 2);
       double sum = 0, largest = 0;
       for (Index v = 0; v < quads.node_count(); ++v) {
         Vec3 x = quads.nodes.col(v);  // Newton projection onto the analytic field
         for (int i = 0; i < 20; ++i) {
-          const Vec3 g = meshing::field_gradient(test::bifurcation, x, 1e-6);
-          x -= g * test::bifurcation(x) / g.squaredNorm();
+          const Vec3 g = meshing::field_gradient(test::contours::bifurcation, x, 1e-6);
+          x -= g * test::contours::bifurcation(x) / g.squaredNorm();
         }
         const double d = (x - quads.nodes.col(v)).norm() * (n - 1);
         sum += d * d, largest = std::max(largest, d);

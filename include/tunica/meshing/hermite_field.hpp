@@ -12,6 +12,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,6 +75,7 @@ void add_crossings(HermiteGrid& grid, Cross&& cross) {
     region.point = grid.axes[a][side % 2 == 0 ? 1 : grid.size(a) - 2] * Vec3::Unit(e);
     grid.regions.push_back(region);
   }
+  bool crossed_inside = false;
   for_crossed_edges(grid, [&](std::size_t edge, std::size_t node, std::size_t other, std::size_t a) {
     const bool first = grid.inside[node] != 0;
     const std::size_t in = first ? node : other, out = first ? other : node;
@@ -83,10 +86,13 @@ void add_crossings(HermiteGrid& grid, Cross&& cross) {
       grid.crossings.push_back(
           {grid.point(in), grid.regions[static_cast<std::size_t>(region)].normal, region});
     } else {
+      crossed_inside = true;
       grid.crossings.push_back(cross(in, out));
     }
   });
-  if (grid.edges.empty()) throw MeshError("no edge of the grid crosses the iso-value: there is no surface");
+  if (!crossed_inside)
+    throw MeshError("no edge of the grid crosses the iso-value: all of it is " +
+                    std::string(grid.edges.empty() ? "outside" : "inside"));
 }
 
 /// The point on the edge from a (inside) to b where the field is iso; regula falsi, Illinois variant.
@@ -135,14 +141,16 @@ template <ScalarField F>
   return grid;
 }
 
-/// The kept voxels (kept[offset] != 0) of an image on its own grid. A kept voxel is at least iso, its
-/// neighbours that are not kept are below; normals are interpolated from central differences.
-template <class T, class Kept>
-[[nodiscard]] HermiteGrid hermite_of_image(const image::Image<T>& image, const Kept& kept, double iso) {
-  TUNICA_EXPECT(kept.size() == image.values.size(), "one mark a voxel");
+/// {value >= iso} of the voxels kept (one byte a voxel, 0 is dropped; empty keeps all) on the image's own
+/// grid; normals are interpolated from central differences. MeshError if nothing crosses.
+template <class T>
+[[nodiscard]] HermiteGrid hermite_of_image(const image::Image<T>& image, std::span<const std::uint8_t> kept,
+                                           double iso) {
+  TUNICA_EXPECT(kept.empty() || kept.size() == image.values.size(), "the mask has one byte for each voxel");
   const std::size_t nx = image.axes[0].size(), ny = image.axes[1].size();
   HermiteGrid grid = detail::padded_grid(image.axes, [&](std::size_t i, std::size_t j, std::size_t k) {
-    return kept[i + nx * (j + ny * k)] != 0;
+    const std::size_t v = i + nx * (j + ny * k);
+    return static_cast<double>(image.values[v]) >= iso && (kept.empty() || kept[v] != 0);
   });
   const std::array<std::size_t, 3> stride{1, nx, nx * ny};
   const auto gradient = [&](const std::array<std::size_t, 3>& p, std::size_t v) {
@@ -162,7 +170,8 @@ template <class T, class Kept>
     const std::size_t v = p[0] + nx * (p[1] + ny * p[2]), w = q[0] + nx * (q[1] + ny * q[2]);
     const double f = static_cast<double>(image.values[v]) - iso,
                  g = static_cast<double>(image.values[w]) - iso;
-    const double cut = f > g ? f / (f - g) : 0.5;
+    const double cut =
+        g < 0 && f > g ? f / (f - g) : 0.5;  // half-way where the choice of voxels alone parts them
     const double t = std::clamp(cut, crossing_margin, 1 - crossing_margin);
     const Vec3 a = grid.point(in), b = grid.point(out);
     return Crossing{a + t * (b - a), detail::outward((1 - t) * gradient(p, v) + t * gradient(q, w), b - a),

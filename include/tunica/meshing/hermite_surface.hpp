@@ -5,7 +5,7 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/mesh/mesh.hpp"
-#include "tunica/meshing/flat_regions.hpp"
+#include "tunica/meshing/cap_planes.hpp"
 #include "tunica/meshing/hermite.hpp"
 #include "tunica/meshing/vertex_normals.hpp"
 
@@ -135,7 +135,7 @@ struct LineHit {
   if (surface.cell_count() == 0) throw MeshError("an empty surface has no contour");
   Box box;
   for (Index n = 0; n < surface.node_count(); ++n) box.extend(Vec3(surface.nodes.col(n)));
-  const auto flat = flat_regions(surface);
+  const auto flat = cap_planes(surface);
   const auto normals = region_vertex_normals(surface);
   for (int attempt = 0; attempt < options.attempts; ++attempt) {
     HermiteGrid grid;

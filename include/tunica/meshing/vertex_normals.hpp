@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tunica/mesh/mesh.hpp"
-#include "tunica/meshing/flat_regions.hpp"
+#include "tunica/meshing/cap_planes.hpp"
 
 #include <Eigen/Geometry>
 
@@ -52,7 +52,7 @@ class RegionNormals {
 [[nodiscard]] inline RegionNormals region_vertex_normals(const mesh::Surface& surface) {
   RegionNormals normals;
   for (Index t = 0; t < surface.cell_count(); ++t) {
-    const auto x = triangle_of(surface, t);
+    const auto x = mesh::triangle(surface, t);
     const Vec3 area = x.area_vector();
     if (!(area.norm() > 0)) continue;
     const Vec3 n = area.normalized();
