@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// SAYS: staggered: the second argument must be a structure solver
+#include "tunica/coupling/staggered.hpp"
+
+using namespace tunica;
+
+struct Flow {
+  void move(const Points<3>&, double) {}
+  SolveReport step(double) { return {}; }
+  Points<3> interface_force() const { return {}; }
+  void save() {}
+  void restore() {}
+};
+/// A wall that takes no load.
+struct Wall {
+#ifdef RIGHT
+  void load(const Points<3>&) {}
+#endif
+  SolveReport step(double) {
+    return {};
+  }
+  Points<3> displacement() const {
+    return {};
+  }
+  void save() {}
+  void restore() {}
+};
+struct Motion {
+  Points<3> extend(const Points<3>& d) const { return d; }
+};
+struct Pair {
+  Points<3> to_fluid(const Points<3>& d) const { return d; }
+  Points<3> to_structure(const Points<3>& f) const { return f; }
+};
+struct Guess {
+  void begin(double) {}
+  Eigen::VectorXd next(const Eigen::VectorXd& x, const Eigen::VectorXd&) { return x; }
+  void accept() {}
+};
+
+auto couple(Flow& flow, Wall& wall) {
+  return coupling::staggered(flow, wall, Motion{}, Pair{}, Guess{});
+}
