@@ -176,7 +176,8 @@ class PressureStep {
     for (const Condition& c : domain.conditions.list())
       for (Eigen::Index f = 0; f < c.faces.cols(); ++f)
         through += std::abs(Conditions::flux(domain.position, c.faces.col(f), u));
-    return !(std::abs(divergence_.sum()) <= tolerated * through);
+    const double round_off = 1e-8 * divergence_.lpNorm<1>();
+    return !(std::abs(divergence_.sum()) <= tolerated * through + round_off);
   }
 
   PressureOperator operator_;
