@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// What a surface from a file must be to bound a volume: closed, manifold, turned outward.
+#pragma once
+
+#include "tunica/core/error.hpp"
+#include "tunica/image/number_text.hpp"
+#include "tunica/io/stl.hpp"
+#include "tunica/mesh/adjacency.hpp"
+#include "tunica/mesh/measures.hpp"
+#include "tunica/mesh/topology.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tunica::io {
+
+struct [[nodiscard]] ClosedSurface {
+  mesh::Surface surface;  // its normals point outward
+  Index components = 0, genus = 0;
+  bool flipped = false;              // it was inside out
+  std::vector<std::string> notices;  // what was repaired, as sentences
+};
+
+namespace detail {
+
+[[nodiscard]] inline std::string point_text(const Vec3& x) {
+  const auto text = [](double v) { return image::number_text(std::round(v * 1e4) / 1e4); };
+  return "(" + text(x[0]) + ", " + text(x[1]) + ", " + text(x[2]) + ")";
+}
+
+/// The first edge of that kind, with its ends and the number of facets that share it.
+[[nodiscard]] inline std::string edge_text(const mesh::Surface& s, Index kind) {
+  const auto twin = mesh::twins(s.cells, s.node_count());
+  for (Index h = 0; h < static_cast<Index>(twin.size()); ++h) {
+    if (twin[static_cast<std::size_t>(h)] != kind) continue;
+    const auto [from, to] = mesh::half_edge(s.cells, h);
+    Index facets = 0;
+    for (Index g = 0; g < static_cast<Index>(twin.size()); ++g) {
+      const auto [p, q] = mesh::half_edge(s.cells, g);
+      facets += (p == from && q == to) || (p == to && q == from);
+    }
+    return "the edge from " + point_text(s.nodes.col(from)) + " to " + point_text(s.nodes.col(to)) +
+           " is shared by " + std::to_string(facets) + " facets";
+  }
+  return "no edge";
+}
+
+}  // namespace detail
+
+/// Checks and, where it is certain, repairs: a surface that is inside out is turned, which a notice tells.
+/// InputError names a bad edge, or each hole by its number of edges and its centre.
+[[nodiscard]] inline ClosedSurface closed_surface(const std::string& name, StlFile file) {
+  ClosedSurface out;
+  mesh::Surface& s = file.surface;
+  const mesh::Topology t = mesh::topology(s);
+  if (t.triangles == 0) throw InputError(name + ": every facet has two equal corners");
+  const std::string open =
+      t.open_edges > 0 ? "; " + std::to_string(t.open_edges) + " edges have one facet only" : "";
+  if (t.nonmanifold_edges > 0)
+    throw InputError(name, detail::edge_text(s, mesh::nonmanifold_edge),
+                     "a closed surface has two at every edge (" + std::to_string(t.nonmanifold_edges) +
+                         " such edges" + open + ")");
+  if (t.misoriented_edges > 0)
+    throw InputError(
+        name, detail::edge_text(s, mesh::misoriented_edge),
+        "which turn opposite ways (" + std::to_string(t.misoriented_edges) + " such edges" + open + ")");
+  if (t.open_edges > 0) {
+    std::string holes;
+    for (const auto& loop : t.loops)
+      holes += (holes.empty() ? "" : ", ") + std::to_string(loop.nodes.size()) + " edges around " +
+               detail::point_text(loop.centre);
+    throw InputError(name, "the surface is open",
+                     std::to_string(t.loops.size()) + " boundary loop" + (t.loops.size() == 1 ? "" : "s") +
+                         ": " + holes + "; cap it to make a volume");
+  }
+  if (t.nonmanifold_nodes > 0)
+    throw InputError(name + ": " + std::to_string(t.nonmanifold_nodes) +
+                     " points where the surface touches itself");
+  const double volume = mesh::enclosed_volume(s);
+  if (!(std::abs(volume) > 0)) throw InputError(name + ": the surface encloses no volume");
+  out.flipped = volume < 0;
+  if (out.flipped) {
+    s.cells.row(1).swap(s.cells.row(2));
+    out.notices.push_back(name + ": the surface was inside out (signed volume " + image::number_text(volume) +
+                          "); it has been turned");
+  }
+  if (file.collapsed > 0)
+    out.notices.push_back(name + ": " + std::to_string(file.collapsed) +
+                          " facets with equal corners left out");
+  out.components = static_cast<Index>(t.components.size()), out.genus = t.genus();
+  out.surface = std::move(s);
+  return out;
+}
+
+[[nodiscard]] inline ClosedSurface read_closed_stl(const std::filesystem::path& path) {
+  return closed_surface(path.string(), read_stl(path));
+}
+
+}  // namespace tunica::io
