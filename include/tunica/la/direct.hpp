@@ -8,6 +8,7 @@
 #include <Eigen/SparseLU>
 
 #include <cmath>
+#include <memory>
 
 namespace tunica::la {
 
@@ -19,13 +20,13 @@ class Direct {
  public:
   static constexpr bool symmetric = Symmetric;
 
-  void analyse(const SparseMatrix& A) { factor_.analyzePattern(A); }
+  void analyse(const SparseMatrix& A) { factor_->analyzePattern(A); }
 
   /// `diverged` for a zero pivot or a NaN.
   SolveReport factorise(const SparseMatrix& A) {
     A_ = A;
-    factor_.factorize(A);
-    usable_ = factor_.info() == Eigen::Success;
+    factor_->factorize(A);
+    usable_ = factor_->info() == Eigen::Success;
     return {usable_ ? Status::converged : Status::diverged, 0, 0};
   }
 
@@ -40,12 +41,12 @@ class Direct {
       x = Eigen::VectorXd::Zero(b.size());
       return {Status::converged, 0, 0};
     }
-    x = factor_.solve(b);
+    x = factor_->solve(b);
     Eigen::VectorXd r = b - product(x);
     double residual = r.norm() / size;
     int iterations = 1;
     if (residual > refine_above && std::isfinite(residual)) {
-      x += factor_.solve(r);
+      x += factor_->solve(r);
       r = b - product(x);
       residual = r.norm() / size;
       ++iterations;
@@ -62,7 +63,7 @@ class Direct {
       return A_ * x;
   }
 
-  Factor factor_;
+  std::unique_ptr<Factor> factor_ = std::make_unique<Factor>();  // of fixed address: Eigen cannot move it
   SparseMatrix A_;
   bool usable_ = false;
 };

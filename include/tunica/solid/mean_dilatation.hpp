@@ -18,8 +18,11 @@ namespace tunica::solid {
 /// What an element gives, N = 3 * nodes; unknown i of node a is number 3 a + i.
 template <class S, int N>
 struct ElementForces {
-  Eigen::Matrix<S, N, 1> force;  // internal forces [N]
-  S smallest_J;                  // of the deformation at the points; not positive: of no use
+  Eigen::Matrix<S, N, 1> force;         // internal forces at the pressure p [N]
+  Eigen::Matrix<S, N, 1> volume_slope;  // dv/du of the current volume v: force per unit of p [m2]
+  S theta, p;                           // v/V and U'(theta) [Pa]
+  S bulk, volume;                       // U''(theta) [Pa] and the reference volume V [m3]
+  S smallest_J;                         // at the points; not positive: the rest is of no use
 };
 template <class S, int N>
 struct ElementTangent : ElementForces<S, N> {
@@ -30,6 +33,9 @@ struct ElementTangent : ElementForces<S, N> {
 ///   Pi(u) = int Phi_iso(u) dV + V U(theta),  theta = v/V = (1/V) int J dV,  p = U'(theta),
 /// so forces and tangent below are the exact first and second derivatives of Pi. One and the same
 /// kernel for doubles, duals and packs (a lane an element); it does not allocate.
+/// Newton on (u, theta, p) differs from Newton on u alone in one thing: the geometric part of its
+/// tangent has the pressure that the last step predicts, p + U'' dv.du/V, not U'(theta(u)), which for
+/// large kappa is nonsense until u has converged. So `tangent` takes that pressure.
 /// X: nodes of the reference shape, u: displacements, both 3 x nodes [m].
 template <mesh::Cell C, class Rule>
 struct MeanDilatation {
@@ -51,47 +57,26 @@ struct MeanDilatation {
   [[nodiscard]] static ElementForces<S, size> forces(const Material& material, const Nodal<S>& X,
                                                      const Nodal<S>& u) {
     const Kinematics<S> k(X, u);
-    const S p = material.volumetric.slope(k.theta);
-    ElementForces<S, size> out{.force = Eigen::Matrix<S, size, 1>::Constant(S(0)),
-                               .smallest_J = k.smallest_J};
+    ElementForces<S, size> out;
+    start(material, k, out);
     for (std::size_t q = 0; q < points; ++q)
-      add_forces(k, q, p, isochoric_stress(material.isochoric, k.F[q], k.J[q]), out.force);
+      add_forces(k, q, isochoric_stress(material.isochoric, k.F[q], k.J[q]), out);
+    out.force += out.p * out.volume_slope;
     return out;
   }
 
+  /// The exact tangent: p = U'(theta) in every part.
   template <class Material, class S>
   [[nodiscard]] static ElementTangent<S, size> tangent(const Material& material, const Nodal<S>& X,
                                                        const Nodal<S>& u) {
     const Kinematics<S> k(X, u);
-    const S p = material.volumetric.slope(k.theta);
-    ElementTangent<S, size> out;
-    out.force.setConstant(S(0));
-    out.stiffness.setConstant(S(0));
-    out.smallest_J = k.smallest_J;
-    Eigen::Matrix<S, size, 1> dv = Eigen::Matrix<S, size, 1>::Constant(S(0));  // d v / du
-    for (std::size_t q = 0; q < points; ++q) {
-      auto response = isochoric_response(material.isochoric, k.F[q], k.J[q]);
-      add_forces(k, q, p, response.tau, out.force);
-      for (int a = 0; a < nodes; ++a)
-        for (int i = 0; i < 3; ++i) dv[3 * a + i] += k.weight[q] * k.J[q] * k.gradient[q](i, a);
-      // p J (grad Na x grad Nb - grad Nb x grad Na) is the modulus p J (1 x 1 - 2 Id) and stress p J 1.
-      const S pJ = p * k.J[q];
-      for (int r = 0; r < 3; ++r) {
-        response.tau[r] += pJ;
-        response.modulus(r, r) -= S(2) * pJ;
-        response.modulus(r + 3, r + 3) -= pJ;
-        for (int s = 0; s < 3; ++s) response.modulus(r, s) += pJ;
-      }
-      add_stiffness(k.gradient[q], k.weight[q], response, out.stiffness);
-    }
-    const S per_volume = material.volumetric.curvature(k.theta) / k.volume;  // U''/V dv dv^T
-    for (int c = 0; c < size; ++c) {
-      const S column = per_volume * dv[c];
-      for (int r = 0; r < (c / 3 + 1) * 3; ++r) out.stiffness(r, c) += dv[r] * column;
-    }
-    for (int c = 0; c < size; ++c)
-      for (int r = c + 1; r < size; ++r) out.stiffness(r, c) = out.stiffness(c, r);
-    return out;
+    return tangent_at(material, k, material.volumetric.slope(k.theta));
+  }
+  /// The same with the pressure p [Pa] in the geometric part.
+  template <class Material, class S>
+  [[nodiscard]] static ElementTangent<S, size> tangent(const Material& material, const Nodal<S>& X,
+                                                       const Nodal<S>& u, const S& p) {
+    return tangent_at(material, Kinematics<S>(X, u), p);
   }
 
   /// Cauchy stress at the points [Pa], the pressure of the element included; a column a point.
@@ -142,18 +127,61 @@ struct MeanDilatation {
     }
   };
 
-  // f_a = int (tau + p J 1) grad N_a dV   [PEREZ08, (8)]
+  template <class Material, class S>
+  static void start(const Material& material, const Kinematics<S>& k, ElementForces<S, size>& out) {
+    out.force.setConstant(S(0));
+    out.volume_slope.setConstant(S(0));
+    out.theta = k.theta;
+    out.p = material.volumetric.slope(k.theta);
+    out.bulk = material.volumetric.curvature(k.theta);
+    out.volume = k.volume;
+    out.smallest_J = k.smallest_J;
+  }
+
+  // f_a = int tau grad N_a dV   [PEREZ08, (8)],  dv/du_a = int J grad N_a dV
   template <class S>
-  static void add_forces(const Kinematics<S>& k, std::size_t q, const S& p, Symmetric<S> tau,
-                         Eigen::Matrix<S, size, 1>& force) {
-    for (int i = 0; i < 3; ++i) tau[i] += p * k.J[q];
+  static void add_forces(const Kinematics<S>& k, std::size_t q, Symmetric<S> tau,
+                         ElementForces<S, size>& out) {
     tau *= k.weight[q];
+    const S dv = k.weight[q] * k.J[q];
     for (int a = 0; a < nodes; ++a) {
       const S x = k.gradient[q](0, a), y = k.gradient[q](1, a), z = k.gradient[q](2, a);
-      force[3 * a] += tau[0] * x + tau[3] * y + tau[5] * z;
-      force[3 * a + 1] += tau[3] * x + tau[1] * y + tau[4] * z;
-      force[3 * a + 2] += tau[5] * x + tau[4] * y + tau[2] * z;
+      out.force[3 * a] += tau[0] * x + tau[3] * y + tau[5] * z;
+      out.force[3 * a + 1] += tau[3] * x + tau[1] * y + tau[4] * z;
+      out.force[3 * a + 2] += tau[5] * x + tau[4] * y + tau[2] * z;
+      out.volume_slope[3 * a] += dv * x;
+      out.volume_slope[3 * a + 1] += dv * y;
+      out.volume_slope[3 * a + 2] += dv * z;
     }
+  }
+
+  template <class Material, class S>
+  static ElementTangent<S, size> tangent_at(const Material& material, const Kinematics<S>& k, const S& p) {
+    ElementTangent<S, size> out;
+    start(material, k, out);
+    out.stiffness.setConstant(S(0));
+    for (std::size_t q = 0; q < points; ++q) {
+      auto response = isochoric_response(material.isochoric, k.F[q], k.J[q]);
+      add_forces(k, q, response.tau, out);
+      // p J (grad Na x grad Nb - grad Nb x grad Na) is the modulus p J (1 x 1 - 2 Id) and stress p J 1.
+      const S pJ = p * k.J[q];
+      for (int r = 0; r < 3; ++r) {
+        response.tau[r] += pJ;
+        response.modulus(r, r) -= S(2) * pJ;
+        response.modulus(r + 3, r + 3) -= pJ;
+        for (int s = 0; s < 3; ++s) response.modulus(r, s) += pJ;
+      }
+      add_stiffness(k.gradient[q], k.weight[q], response, out.stiffness);
+    }
+    out.force += out.p * out.volume_slope;
+    const S bulk_per_volume = out.bulk / out.volume;
+    for (int c = 0; c < size; ++c) {  // U''/V dv dv^T
+      const S column = bulk_per_volume * out.volume_slope[c];
+      for (int r = 0; r < (c / 3 + 1) * 3; ++r) out.stiffness(r, c) += out.volume_slope[r] * column;
+    }
+    for (int c = 0; c < size; ++c)
+      for (int r = c + 1; r < size; ++r) out.stiffness(r, c) = out.stiffness(c, r);
+    return out;
   }
 
   // K_ab = int B_a^T c B_b + (grad N_a . tau grad N_b) 1 dV, for the node blocks a <= b

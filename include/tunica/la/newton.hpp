@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Newton's method with a line search, which may keep its factorised tangent while it contracts well.
+#pragma once
+
+#include "tunica/la/linear_solver.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <utility>
+#include <vector>
+
+namespace tunica::la {
+
+/// A residual's side information.
+struct ResidualInfo {
+  bool admissible = true;  // false where the problem is not defined (a cell with J <= 0)
+  double scale = 0;        // size of the forces that balance, in the unit of the residual
+  double rounding = 0;     // what of |r| is rounding: below it the problem is solved
+  double merit = 0;        // what the line search wants to fall; |r| in most problems
+};
+
+/// r(x) = 0 with r = 0 kept for prescribed unknowns; `tangent` fills A = dr/dx at x, the rows and
+/// columns of prescribed unknowns being those of a diagonal matrix; `pattern` is a matrix of A's
+/// pattern. `direction` announces the step dx that leaves x, and `residual` is told how far along
+/// it x is (0: at the start), so that a problem with condensed unknowns can carry them along.
+template <class P>
+concept NonlinearProblem = requires(P problem, const Eigen::VectorXd& x, Eigen::VectorXd& r,
+                                    SparseMatrix& A) {
+  { problem.residual(x, r, 1.0) } -> std::same_as<ResidualInfo>;
+  problem.direction(x, x);
+  problem.tangent(x, A);
+  { problem.pattern() } -> std::convertible_to<SparseMatrix>;
+};
+
+struct NewtonOptions {
+  double tolerance = 1e-10;            // on |r| / scale
+  double increment_tolerance = 1e-12;  // on max |dx| / max |x| of a full step: no digit of x moves any more
+  int max_iterations = 30;             // linear solves
+  int max_cuts = 12;                   // of one step by the line search
+  double growth = 2;                   // of the merit in one step, above which the step is cut
+  double refresh_above = 0;            // contraction of the merit above which the tangent is made anew; 0: always
+};
+
+struct [[nodiscard]] NewtonReport {
+  SolveReport solve;            // residual: |r| / scale at the end
+  std::vector<double> history;  // |r| / scale at the start and after each iteration
+  int factorisations = 0;
+  bool inadmissible = false;  // it ended because no step led back to where the problem is defined
+
+  [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
+};
+
+/// Slope of the convergence at its end: log(e3/e2) / log(e2/e1) of the last three residuals of the
+/// history that lie above `floor`; 2 for Newton with a consistent tangent. 0 if there are not three.
+[[nodiscard]] inline double observed_order(const std::vector<double>& history, double floor) {
+  std::vector<double> e;
+  for (const double h : history)
+    if (h > floor) e.push_back(h);
+  if (e.size() < 3) return 0;
+  const std::size_t n = e.size();
+  return std::log(e[n - 1] / e[n - 2]) / std::log(e[n - 2] / e[n - 3]);
+}
+
+/// Keeps the solver, its analysis and its factors from one call to the next.
+template <LinearSolver Solver>
+class Newton {
+ public:
+  explicit Newton(NewtonOptions options = {}, Solver solver = {})
+      : options_(options), solver_(std::move(solver)) {}
+
+  /// The tangent is made anew in the next iteration (the matrix changed: a new step length, a new time).
+  void forget() { fresh_enough_ = false; }
+
+  /// Solves r(x) = 0 from x; x is the last iterate at the end, whatever the status. `diverged`: a
+  /// NaN, a singular tangent, or no admissible step (`inadmissible`); else `max_iterations`.
+  template <NonlinearProblem Problem>
+  NewtonReport solve(Problem& problem, Eigen::VectorXd& x) {
+    NewtonReport report;
+    const auto ended = [&](Status status, double residual) {
+      report.solve.status = status;
+      report.solve.residual = residual;
+      if (status != Status::converged) forget();
+      return report;
+    };
+    ResidualInfo info = problem.residual(x, r_, 0);
+    double size = r_.norm();
+    double relative = size > 0 ? size / info.scale : size;
+    report.history.push_back(relative);
+    report.inadmissible = !info.admissible;
+    if (!info.admissible || !std::isfinite(relative)) return ended(Status::diverged, relative);
+
+    for (int& k = report.solve.iterations; !(relative <= options_.tolerance || size <= info.rounding);) {
+      if (k == options_.max_iterations) return ended(Status::max_iterations, relative);
+      if (!fresh_enough_) {
+        if (!factorise(problem, x)) return ended(Status::diverged, relative);
+        ++report.factorisations;
+      }
+      if (const auto linear = solver_.solve(-r_, dx_); linear.status == Status::diverged)
+        return ended(Status::diverged, relative);
+      ++k;
+      problem.direction(x, dx_);
+      const double old_merit = info.merit;
+      double s = 1;
+      for (int cut = 0;; ++cut) {
+        trial_ = x + s * dx_;
+        info = problem.residual(trial_, r_, s);
+        size = r_.norm();
+        const bool usable = info.admissible && std::isfinite(size);
+        if (usable && info.merit <= options_.growth * old_merit) break;
+        if (cut == options_.max_cuts) {
+          report.inadmissible = !info.admissible;
+          return ended(Status::diverged, relative);
+        }
+        s *= 0.5;
+      }
+      x = trial_;
+      relative = size > 0 ? size / info.scale : size;
+      report.history.push_back(relative);
+      if (!std::isfinite(relative)) return ended(Status::diverged, relative);
+      const double moved = s * dx_.lpNorm<Eigen::Infinity>();
+      if (s == 1 && moved <= options_.increment_tolerance * x.lpNorm<Eigen::Infinity>()) break;
+      if (!(info.merit <= options_.refresh_above * old_merit)) forget();
+    }
+    return ended(Status::converged, relative);
+  }
+
+ private:
+  template <class Problem>
+  bool factorise(Problem& problem, const Eigen::VectorXd& x) {
+    if (A_.rows() != x.size()) {
+      A_ = problem.pattern();
+      solver_.analyse(A_);
+    }
+    problem.tangent(x, A_);
+    fresh_enough_ = solver_.factorise(A_).status == Status::converged;
+    return fresh_enough_;
+  }
+
+  NewtonOptions options_;
+  Solver solver_;
+  SparseMatrix A_;
+  Eigen::VectorXd r_, dx_, trial_;
+  bool fresh_enough_ = false;
+};
+
+}  // namespace tunica::la

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "support/thick_tube.hpp"
+#include "tunica/meshing/tube.hpp"
+#include "tunica/solid/laws.hpp"
+#include "tunica/solid/statics.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+using namespace tunica;
+
+namespace {
+
+struct Inflated {
+  double inner_stretch, outer_stretch;
+  solid::StaticsReport report;
+};
+
+/// A quarter ring, one cell long, in plane strain.
+Inflated inflate(const test::ThickTube& tube, double p, double kappa, int radial, int around) {
+  const auto mesh = meshing::quarter_tube({.inner_radius = tube.inner,
+                                           .thickness = tube.outer - tube.inner,
+                                           .length = 1e-3,
+                                           .cells = {radial, around, 1}});
+  solid::Statics wall{mesh, solid::Hyperelastic{solid::Yeoh{.c10 = tube.c10, .c20 = tube.c20},
+                                                solid::Quadratic{.kappa = kappa}}};
+  wall.fix(mesh.patch("ends"), solid::Axis::z);
+  wall.fix(mesh.patch("sym_x"), solid::Axis::x);
+  wall.fix(mesh.patch("sym_y"), solid::Axis::y);
+  wall.pressure(mesh.patch("inner"), p);
+  Inflated out;
+  out.report = wall.solve();
+  const Points<3> x = mesh.nodes + wall.displacement();
+  const auto mean_radius = [&](const char* patch) {
+    double sum = 0;
+    const auto nodes = mesh::patch_nodes(mesh.patch(patch));
+    for (const Index n : nodes) sum += x.col(n).head<2>().norm();
+    return sum / static_cast<double>(nodes.size());
+  };
+  out.inner_stretch = mean_radius("inner") / tube.inner;
+  out.outer_stretch = mean_radius("outer") / tube.outer;
+  return out;
+}
+
+}  // namespace
+
+TEST_SUITE("convergence") {
+  TEST_CASE("solid: thick tube closed form against its quadrature and the tabled values") {
+    const test::ThickTube tube;
+    for (const double l : {1.01, 1.05, 1.1, 1.2, 1.5})
+      CHECK(tube.pressure_by_quadrature(l) == doctest::Approx(tube.pressure(l)).epsilon(1e-11));
+    CHECK(tube.pressure(1.05) == doctest::Approx(14707.8055923).epsilon(1e-10));
+    CHECK(tube.pressure(1.10) == doctest::Approx(36133.6801743).epsilon(1e-10));
+    CHECK(tube.stretch(16e3) == doctest::Approx(1.053778941042).epsilon(1e-11));
+  }
+
+  TEST_CASE("solid: thick tube within 1 percent with four Hex8 through the wall") {
+    const test::ThickTube tube;
+    const double kappa = 1000 * 2 * tube.c10;
+    for (const double l : {1.05, 1.10}) {
+      const double p = tube.pressure(l);
+      const auto at = [&](double k) {
+        const auto ring = inflate(tube, p, k, 4, 16);
+        REQUIRE(ring.report);
+        if (k == kappa) CHECK(la::observed_order(ring.report.history, 5e-12) >= 1.9);  // above rounding
+        return ring.inner_stretch;
+      };
+      const double s1 = at(kappa), s2 = at(10 * kappa);
+      const double limit = s2 + (s2 - s1) / 9;  // the error of a finite kappa is linear in 1/kappa
+      const auto errors = [&](double s) { return (p - tube.pressure(s)) / p * 100; };
+      MESSAGE("inner stretch " << l << " at " << p << " Pa: kappa/mu 1e3 " << s1 << " (pressure off by "
+                               << errors(s1) << " %), 1e4 " << s2 << " (" << errors(s2)
+                               << " %), extrapolated " << limit << " (" << errors(limit) << " %)");
+      CHECK(std::abs(errors(s1)) < 1);
+      CHECK(std::abs(errors(s2)) < 1);
+      CHECK(std::abs(s1 - l) < 0.01 * (l - 1));
+    }
+  }
+
+  TEST_CASE("solid: thick tube converges at second order") {
+    const test::ThickTube tube;
+    const double l = 1.10, p = tube.pressure(l);
+    std::vector<double> errors;
+    for (const int n : {1, 2, 4, 8}) {
+      const auto ring = inflate(tube, p, 1e6 * 2 * tube.c10, n, 4 * n);
+      REQUIRE(ring.report);
+      errors.push_back(std::abs(ring.inner_stretch - l));
+    }
+    for (std::size_t k = 1; k < errors.size(); ++k) {
+      const double order = std::log2(errors[k - 1] / errors[k]);
+      MESSAGE("radial cells " << (1 << k) << ": error of the inner stretch " << errors[k] << ", order "
+                              << order);
+      if (k > 1) CHECK(order == doctest::Approx(2).epsilon(0.1));
+    }
+  }
+}
