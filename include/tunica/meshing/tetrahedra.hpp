@@ -7,6 +7,7 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/triangle.hpp"
 #include "tunica/meshing/front_recovery.hpp"
+#include "tunica/meshing/improve.hpp"
 #include "tunica/meshing/lattice.hpp"
 #include "tunica/meshing/size_field.hpp"
 #include "tunica/meshing/tet_complex.hpp"
@@ -43,6 +44,7 @@ struct FillReport {
   double surface_min_dihedral = 0;      // smallest inner angle between two triangles
   Index below_target = 0;               // tetrahedra that miss the target angle
   Index missing_edges = 0, missing_faces = 0, steiner = 0;  // of the recovery
+  ImproveCounts improvement;
 };
 
 struct [[nodiscard]] FillResult {
@@ -86,13 +88,27 @@ inline void measure_surface(const FrontSurface& s, const std::vector<Vec3>& node
   r.surface_min_dihedral = fold * 180 / std::numbers::pi;
 }
 
+/// For each node of the surface the sine that a tetrahedron with an edge there can be asked for:
+/// that of the smallest angle of the triangles at the node.
+[[nodiscard]] inline std::vector<double> surface_limits(const FrontSurface& s, const std::vector<Vec3>& nodes) {
+  std::vector<double> limit(nodes.size(), 1.0);
+  for (const Triple& t : s.triangles) {
+    const auto p = [&](std::size_t i) { return nodes[static_cast<std::size_t>(t[i])]; };
+    const double sine = std::sin(mesh::Triangle{p(0), p(1), p(2)}.smallest_angle());
+    for (const Index n : t) limit[static_cast<std::size_t>(n)] = std::min(limit[static_cast<std::size_t>(n)], sine);
+  }
+  return limit;
+}
+
 /// Checks everything that is promised and measures the rest: signs, border, volume, angles.
 inline void verify(const TetComplex& c, const FrontSurface& s, const FillOptions& options, FillReport& r) {
   std::vector<char> found(s.triangles.size(), 0);
-  long double volume = 0, bounded = 0;
+  constexpr Index block = 1024;  // sums of blocks: equal terms would round to the same side
+  long double volume = 0, part = 0, bounded = 0;
   double least = std::numbers::pi, most = 0, ratio = 0;
   const double target = options.target_angle * std::numbers::pi / 180;
   for (Index t = 0; t < c.size(); ++t) {
+    if (t % block == 0) volume += part, part = 0;
     if (!c.alive(t)) continue;
     const Quad& n = c.nodes(t);
     if (!(c.orient(n) > 0)) throw MeshError("a tetrahedron is inverted at " + place_text(c.point(n[0])));
@@ -106,13 +122,14 @@ inline void verify(const TetComplex& c, const FrontSurface& s, const FillOptions
       found[static_cast<std::size_t>(m)] = 1;
     }
     const std::array<Vec3, 4> p{c.point(n[0]), c.point(n[1]), c.point(n[2]), c.point(n[3])};
-    volume += six_volumes(p[0], p[1], p[2], p[3]);
+    part += six_volumes(p[0], p[1], p[2], p[3]);
     const auto angles = dihedral_angles(p[0], p[1], p[2], p[3]);
     const auto [lo, hi] = std::minmax_element(angles.begin(), angles.end());
     least = std::min(least, *lo), most = std::max(most, *hi);
     r.below_target += *lo < target || *hi > std::numbers::pi - target;
     ratio += mean_ratio(p[0], p[1], p[2], p[3]);
   }
+  volume += part;
   const auto lost = std::count(found.begin(), found.end(), 0);
   if (lost > 0) throw MeshError(std::to_string(lost) + " triangles of the surface are not in the filling");
   const Vec3 o = c.point(s.triangles[0][0]);
@@ -195,6 +212,8 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
       throw MeshError(std::string("the surface could not be filled: ") + failure.what + ", at " +
                       place_text(failure.place));
     }
+    const double target = std::sin(options.target_angle * std::numbers::pi / 180);
+    result.report.improvement = Improve::run(complex, detail::surface_limits(front, nodes), target);
     detail::verify(complex, front, options, result.report);
     result.mesh = detail::to_mesh(complex, surface);
     result.report.nodes = result.mesh.node_count();

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+// Improves the worst tetrahedra, the surface kept: edge removal first, then faces, smoothing, and
+// from the third sweep on new nodes and contractions [FREITAG97, KLINGNER07].
+#pragma once
+
+#include "tunica/meshing/cavity_polygon.hpp"
+#include "tunica/meshing/improve_insert.hpp"
+#include "tunica/meshing/improve_mesh.hpp"
+#include "tunica/meshing/improve_smooth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace tunica::meshing {
+
+struct ImproveCounts {
+  Index sweeps = 0, edges_removed = 0, faces_removed = 0, moved = 0, inserted = 0, contracted = 0;
+};
+
+class Improve {
+ public:
+  static constexpr int most_sweeps = 14, first_insertion = 2;
+
+  /// target: sine of the dihedral angle that every tetrahedron should exceed. limit[n]: what a
+  /// tetrahedron with an edge at node n of the surface can reach; the triangles there bound it.
+  static ImproveCounts run(TetComplex& complex, std::span<const double> limit, double target) {
+    Improve work(complex, limit, target);
+    for (int sweep = 0; sweep < most_sweeps; ++sweep)
+      if (!work.sweep(sweep)) break;
+    return work.counts_;
+  }
+
+ private:
+  Improve(TetComplex& complex, std::span<const double> limit, double target)
+      : m_(complex, static_cast<Index>(limit.size())), smooth_(m_), insert_(m_), limit_(limit), target_(target) {}
+
+  [[nodiscard]] bool is_bad(Index t) const { return m_.quality(t) < target_; }
+
+  /// Is t worth a new node, or is the surface itself the limit?
+  [[nodiscard]] bool hopeful(Index t) const {
+    double bound = target_;
+    int on_surface = 0;
+    for (const Index n : m_.c.nodes(t))
+      if (!m_.free(n)) bound = std::min(bound, limit_[at(n)]), ++on_surface;
+    return on_surface < 2 || m_.quality(t) < bound;
+  }
+
+  template <class I>
+  [[nodiscard]] static std::size_t at(I i) {
+    return static_cast<std::size_t>(i);
+  }
+
+  /// Tetrahedra below the target, the worst first.
+  [[nodiscard]] std::vector<Index> bad() const {
+    std::vector<Index> list;
+    for (Index t = 0; t < m_.c.size(); ++t)
+      if (m_.c.alive(t) && is_bad(t)) list.push_back(t);
+    std::sort(list.begin(), list.end(), [&](Index s, Index t) {
+      return m_.quality(s) != m_.quality(t) ? m_.quality(s) < m_.quality(t) : s < t;
+    });
+    return list;
+  }
+
+  /// True when another sweep is worth its time. New nodes are rationed: where the surface itself
+  /// is the limit, more of them would only make more tetrahedra that miss the target.
+  bool sweep(int number) {
+    const auto list = bad();
+    if (list.empty()) return false;
+    if (number == first_insertion) most_inserted_ = 100 + static_cast<Index>(list.size() / 2);
+    const double worst = m_.quality(list[0]), count = static_cast<double>(list.size());
+    if (number > first_insertion + 1 && count > 0.98 * last_count_ && worst < 1.02 * last_worst_) return false;
+    last_count_ = count, last_worst_ = worst;
+    ++counts_.sweeps;
+    bool changed = false;
+    for (const Index t : list) {
+      if (!m_.c.alive(t) || !is_bad(t)) continue;
+      changed = repair(t, number) || changed;
+    }
+    return changed || number < first_insertion;
+  }
+
+  bool repair(Index t, int number) {
+    if (remove_an_edge(t)) return ++counts_.edges_removed, true;
+    if (remove_a_face(t)) return ++counts_.faces_removed, true;
+    const Quad n = m_.c.nodes(t);
+    bool moved = false;
+    for (const Index v : n)
+      if (smooth_.smooth(v)) ++counts_.moved, moved = true;
+    if (number < first_insertion || !is_bad(t)) return moved;
+    if (insert_.contract(t)) return ++counts_.contracted, true;
+    if (counts_.inserted < most_inserted_ && hopeful(t) && insert_.insert(t)) return ++counts_.inserted, true;
+    return moved;
+  }
+
+  /// The best removal among the six edges of t, if it lifts the worst around that edge.
+  bool remove_an_edge(Index t) {
+    const Quad n = m_.c.nodes(t);
+    double best = 0;
+    chosen_.clear();
+    for (const auto& [i, j] : mesh::Tet4::edges) {
+      const Index a = n[at(i)], b = n[at(j)];
+      m_.c.ring(t, a, b, ring_);
+      const int corners = static_cast<int>(ring_.link.size());
+      if (!ring_.closed || corners > longest_ring) continue;
+      const double floor = std::max(best, m_.worst(ring_.tets) * 1.01 + 1e-9);
+      const auto value = [&](int p, int q, int r) {
+        const Index x = ring_.link[at(p)], y = ring_.link[at(q)], z = ring_.link[at(r)];
+        const double upper = m_.quality(Quad{x, y, z, b});
+        return upper > floor ? std::min(upper, m_.quality(Quad{x, z, y, a})) : -1.0;
+      };
+      const double q = polygon_.triangulate(corners, floor, value);
+      if (q < 0) continue;
+      best = q;
+      chosen_ = ring_.tets;
+      fresh_.clear();
+      for (const auto& [p, k, r] : polygon_.triangles) {
+        const Index x = ring_.link[at(p)], y = ring_.link[at(k)], z = ring_.link[at(r)];
+        fresh_.push_back({x, y, z, b});
+        fresh_.push_back({x, z, y, a});
+      }
+    }
+    if (chosen_.empty()) return false;
+    m_.replace(chosen_, fresh_);
+    return true;
+  }
+
+  /// The best exchange of a face of t for the edge between its two apexes.
+  bool remove_a_face(Index t) {
+    const Quad n = m_.c.nodes(t);
+    double best = 0;
+    std::array<Index, 2> pair{-1, -1};
+    std::array<Quad, 3> chosen{};
+    for (int f = 0; f < 4; ++f) {
+      const Side s = m_.c.across(t, f);
+      if (s < 0) continue;
+      const Triple tri = m_.c.face(t, f);
+      const Index u = n[at(f)], w = m_.c.nodes(s / 4)[at(s % 4)];
+      const double floor = std::max(best, std::min(m_.quality(t), m_.quality(s / 4)) * 1.01 + 1e-9);
+      std::array<Quad, 3> three{};
+      double least = 2;
+      for (std::size_t i = 0; i < 3 && least > floor; ++i) {
+        three[i] = {u, w, tri[i], tri[(i + 1) % 3]};
+        least = std::min(least, m_.quality(three[i]));
+      }
+      if (least > floor) best = least, chosen = three, pair = {t, s / 4};
+    }
+    if (pair[0] < 0) return false;
+    m_.replace(pair, chosen);
+    return true;
+  }
+
+  static constexpr int longest_ring = 12;
+  ImproveMesh m_;
+  ImproveSmooth smooth_;
+  ImproveInsert insert_;
+  CavityPolygon polygon_;
+  TetComplex::Ring ring_;
+  std::vector<Index> chosen_;
+  std::vector<Quad> fresh_;
+  std::span<const double> limit_;
+  double target_, last_count_ = 0, last_worst_ = 0;
+  Index most_inserted_ = 0;
+  ImproveCounts counts_;
+};
+
+}  // namespace tunica::meshing
