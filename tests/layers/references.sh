@@ -5,8 +5,8 @@ set -u
 export LC_ALL=C
 cd "$1" || exit 2
 status=0
-keys=$(grep -roshE '\[[A-Z]{2,}[0-9]{2}[a-z]?(, [^]]*)?\]' --include='*.hpp' --include='*.cpp' --include='*.md' include examples tests bench docs |
-       sed -E 's/^\[([A-Z]+[0-9]+[a-z]?).*/\1/' | sort -u)
+keys=$(grep -roshE '\[[A-Z]{2,}[0-9]{2}[^]]*\]' --include='*.hpp' --include='*.cpp' --include='*.md' \
+         include examples tests bench docs | grep -oE '\b[A-Z]{2,}[0-9]{2}\b' | grep -v '^KEY99$' | sort -u)
 for key in $keys; do
   grep -qE "^@[a-z]+\{$key," docs/references.bib || { echo "[$key] is not in docs/references.bib"; status=1; }
 done
