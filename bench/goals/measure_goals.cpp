@@ -42,11 +42,11 @@ std::string field(std::string text) {
 void run(const char* path) {
   std::ofstream rows(path);
   rows << "goal,measured,target,ratio,outcome,flags,commit\n";
-  std::printf("%-38s| %-47s| %-50s| %-52s| %s\n", "goal", "measured", "target", "ratio to the peer",
+  std::printf("%-40s| %-60s| %-56s| %-46s| %s\n", "goal", "measured", "target", "ratio to the peer",
               "(outcome)");
-  for (const auto& lines : {contour_goals, smoothing_goals})
+  for (const auto& lines : {contour_goals, smoothing_goals, filling_goals, solid_goals})
     for (const Goal& g : lines()) {
-      std::printf("%-38s| %-47s| %-50s| %-52s| %s\n", g.name.c_str(), g.measured.c_str(), g.target.c_str(),
+      std::printf("%-40s| %-60s| %-56s| %-46s| %s\n", g.name.c_str(), g.measured.c_str(), g.target.c_str(),
                   g.ratio.c_str(), name(g.outcome).data());
       std::fflush(stdout);
       rows << field(g.name) << ',' << field(g.measured) << ',' << field(g.target) << ',' << field(g.ratio)
