@@ -87,14 +87,26 @@ class Splitter {
     }
   }
 
-  /// Nodes of the surface where loops of the section touch: they must be avoided. Ascending; an even
-  /// more tangled section has none of them, and its caps cannot be made.
+  /// Nodes of the surface that must be kept off the plane: where loops of the section touch, and one end
+  /// of each edge that joins two nodes of the rim within what is kept (a cap could use it too). Ascending.
   [[nodiscard]] std::vector<Index> pinched() const {
     std::vector<int> leaves(x_.size(), 0);
     for (const auto& [e, side] : open_edges()) ++leaves[at(e.from)];
     std::vector<Index> nodes;
     for (Index n = 0; n < s_.node_count(); ++n)
       if (leaves[at(n)] > 1) nodes.push_back(n);
+    std::vector<std::pair<Index, Index>> within;  // half-edges between nodes of the rim
+    for (std::size_t t = 0; t < triangles_.size(); ++t)
+      for (std::size_t k = 0; kept_[t] && k < 3; ++k) {
+        const Index a = triangles_[t][k], b = triangles_[t][(k + 1) % 3];
+        if (leaves[at(a)] > 0 && leaves[at(b)] > 0) within.emplace_back(a, b);
+      }
+    std::sort(within.begin(), within.end());
+    for (const auto& [a, b] : within)
+      if (a < b && a < s_.node_count() && std::binary_search(within.begin(), within.end(), std::pair(b, a)))
+        nodes.push_back(a);
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     return nodes;
   }
 
