@@ -89,6 +89,9 @@ class PressureOperator {
   /// 1 / Mt, 0 at nodes without stabilisation: nodes.
   [[nodiscard]] const Eigen::VectorXd& inverse_mass() const { return lumped_; }
 
+  /// Entries (i, j) in the order of preconditioning(): Q_ji and (gamma L + L_t)_ij, nothing left out.
+  [[nodiscard]] const Eigen::Matrix<double, 4, Eigen::Dynamic>& entries() const { return forward_; }
+
   /// gamma L + L_t with the coupling cut at prescribed nodes: what incomplete factors are made of.
   [[nodiscard]] const la::RowMatrix& preconditioning() const { return preconditioning_; }
 

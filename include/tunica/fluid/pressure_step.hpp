@@ -2,6 +2,7 @@
 // The pressure increment, the correction of the velocity and the rotational update. [ONATE06; GUERMOND06]
 #pragma once
 
+#include "tunica/fluid/coarse_space.hpp"
 #include "tunica/fluid/conditions.hpp"
 #include "tunica/fluid/momentum.hpp"
 #include "tunica/fluid/pressure_operator.hpp"
@@ -29,7 +30,8 @@ struct Domain {
 
 class PressureStep {
  public:
-  explicit PressureStep(const Pattern& pattern) : operator_(pattern) {}
+  PressureStep(const Pattern& pattern, const Points<3>& x, double volume)
+      : operator_(pattern), coarse_(x, volume) {}
 
   /// gamma L + T about the advecting velocity a; gamma = dt / (rho c0) [m3 s/kg].
   template <Rheology R, Stabilization S>
@@ -69,7 +71,7 @@ class PressureStep {
     if (enclosed) b -= (b.sum() / mass.sum()) * mass;
     la::KrylovOptions with_floor = options;
     with_floor.absolute = 1e-14 * round_off;
-    const SolveReport report = la::cg(operator_, cholesky_, b, start_, with_floor);
+    const SolveReport report = la::cg(operator_, TwoLevel{cholesky_, coarse_}, b, start_, with_floor);
     if (enclosed) start_.array() -= start_.dot(mass) / mass.sum();
     x += start_;
     return report;
@@ -122,10 +124,18 @@ class PressureStep {
   }
 
  private:
+  struct TwoLevel {
+    const la::IncompleteCholesky& fine;
+    const CoarseSpace& coarse;
+    void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const { fine.apply(r, z), coarse.add(r, z); }
+  };
+
   void prepare(const Domain& domain) {
     operator_.assemble(domain.pattern, domain.cells, domain.tets, tau_, gamma_,
                        domain.conditions.pressure_flags());
     cholesky_.compute(operator_.preconditioning());
+    coarse_.compute(operator_.preconditioning(), operator_.entries(), operator_.inverse_mass(),
+                    domain.conditions.pressure_flags());
   }
 
   /// divergence_ = int N div u.
@@ -182,6 +192,7 @@ class PressureStep {
 
   PressureOperator operator_;
   la::IncompleteCholesky cholesky_;
+  CoarseSpace coarse_;
   std::vector<double> tau_;  // [m3 s/kg] a cell
   double gamma_ = 0;         // dt / (rho c0) [m3 s/kg]
   Eigen::VectorXd divergence_, stabilised_, right_, product_, start_, reaction_;
