@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// Hex8 layers by extruding a sheet of quadrilaterals outward: uniform thickness measured normal to the
+// faces, flat ends, no inverted cell. Where the sheet folds too sharply the thickness gives way.
+#pragma once
+
+#include "tunica/core/error.hpp"
+#include "tunica/core/expect.hpp"
+#include "tunica/mesh/mesh.hpp"
+#include "tunica/mesh/quality.hpp"
+#include "tunica/meshing/extrude_field.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tunica::meshing {
+
+/// What became of the thickness; lengths in the unit of the nodes.
+struct ExtrudeReport {
+  Index thinned = 0;                   // nodes where it gave way by more than 1 %
+  double least_share = 1;              // least thickness over the thickness asked for
+  Vec3 thinnest = Vec3::Zero();        // inner node of it
+  Vec3 thinned_centre = Vec3::Zero();  // mean of the nodes that gave way
+  double deviation_rms = 0,
+         deviation_max = 0;  // of the faces' thickness, relative, where it did not give way
+  mesh::HexQuality quality;
+};
+
+/// Nodes: those of the sheet first, then the same for each layer outward. Cells: layer by layer in the order
+/// of the sheet; nodes 0-3 are on the inner side.
+struct [[nodiscard]] Extruded {
+  mesh::HexMesh mesh;
+  std::vector<double> share;  // thickness over that asked for, one a node of the sheet
+  ExtrudeReport report;
+};
+
+namespace detail {
+
+inline void add_extruded_patches(mesh::HexMesh& mesh, const mesh::QuadSurface& sheet,
+                                 std::span<const SheetRim> rims, int layers) {
+  const Index nodes = sheet.node_count(), quads = sheet.cell_count();
+  Connectivity<4> inner(4, quads), outer(4, quads);
+  for (Index q = 0; q < quads; ++q) {
+    inner.col(q) = sheet.cells.col(q).reverse();
+    outer.col(q) = sheet.cells.col(q).array() + nodes * layers;
+  }
+  mesh.patches.push_back({"inner", inner});
+  mesh.patches.push_back({"outer", outer});
+  std::vector<Index> all;
+  std::vector<mesh::Patch<mesh::Quad4>> ends;
+  for (const SheetRim& rim : rims) {
+    std::vector<Index> faces;
+    for (int l = 0; l < layers; ++l)
+      for (std::size_t i = 0; i < rim.loop.size(); ++i) {
+        const Index a = rim.loop[i] + nodes * l, b = rim.loop[(i + 1) % rim.loop.size()] + nodes * l;
+        faces.insert(faces.end(), {a, b, b + nodes, a + nodes});
+      }
+    all.insert(all.end(), faces.begin(), faces.end());
+    ends.push_back({rim.name, Eigen::Map<const Connectivity<4>>(
+                                  faces.data(), 4, static_cast<Eigen::Index>(faces.size() / 4))});
+  }
+  mesh.patches.push_back(
+      {"ends", Eigen::Map<const Connectivity<4>>(all.data(), 4, static_cast<Eigen::Index>(all.size() / 4))});
+  for (auto& end : ends) mesh.patches.push_back(std::move(end));
+}
+
+}  // namespace detail
+
+/// Extrudes the sheet to the side of its normals. Patches "inner" (towards the lumen), "outer", "ends", then
+/// one with the name of each rim. MeshError where no direction sees all faces around a node: the sheet itself
+/// is folded there.
+[[nodiscard]] inline Extruded extrude(const mesh::QuadSurface& sheet, std::span<const SheetRim> rims,
+                                      const ExtrudeOptions& options) {
+  TUNICA_EXPECT(options.thickness > 0 && options.layers > 0, "an extrusion has a thickness and layers");
+  detail::ExtrudeField field(sheet, rims, options);
+  field.solve();
+
+  Extruded result;
+  mesh::HexMesh& mesh = result.mesh;
+  const Index nodes = sheet.node_count(), quads = sheet.cell_count(), layers = options.layers;
+  mesh.nodes.resize(3, nodes * (layers + 1));
+  for (Index l = 0; l <= layers; ++l)
+    for (Index n = 0; n < nodes; ++n)
+      mesh.nodes.col(l * nodes + n) =
+          sheet.nodes.col(n) + (static_cast<double>(l) / layers) * field.offset(n);
+  mesh.cells.resize(8, quads * layers);
+  for (Index l = 0; l < layers; ++l)
+    for (Index q = 0; q < quads; ++q)
+      mesh.cells.col(l * quads + q) << sheet.cells.col(q).array() + l * nodes,
+          sheet.cells.col(q).array() + (l + 1) * nodes;
+  detail::add_extruded_patches(mesh, sheet, rims, options.layers);
+
+  ExtrudeReport& report = result.report;
+  for (Index n = 0; n < nodes; ++n) {
+    const double share = field.share(n);
+    result.share.push_back(share);
+    if (share < report.least_share) report.least_share = share, report.thinnest = sheet.nodes.col(n);
+    if (share < 0.99) ++report.thinned, report.thinned_centre += sheet.nodes.col(n);
+  }
+  if (report.thinned > 0) report.thinned_centre /= report.thinned;
+  Index faces = 0;
+  for (Index q = 0; q < quads; ++q) {
+    const auto deviation = field.deviation(q);
+    if (!deviation) continue;
+    ++faces;
+    report.deviation_rms += *deviation * *deviation;
+    report.deviation_max = std::max(report.deviation_max, std::abs(*deviation));
+  }
+  report.deviation_rms = faces > 0 ? std::sqrt(report.deviation_rms / faces) : 0;
+  report.quality = mesh::quality(mesh);
+  return result;
+}
+
+}  // namespace tunica::meshing

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// How far two meshes of one interface lie apart, measured both ways.
+#pragma once
+
+#include "tunica/mesh/mesh.hpp"
+#include "tunica/meshing/split_quads.hpp"
+#include "tunica/meshing/surface_foot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace tunica::meshing {
+
+/// Distances in the unit of the nodes, with the places where they are greatest.
+struct InterfaceDistance {
+  double quads_max = 0, quads_rms = 0;  // from points of the quadrilaterals to the wall
+  double wall_max = 0, wall_rms = 0;    // from nodes of the wall to the quadrilaterals
+  Vec3 quads_place = Vec3::Zero(), wall_place = Vec3::Zero();
+};
+
+/// Bilinear points, 5 x 5 a quadrilateral, against region 0 of the lumen; its nodes against the
+/// quadrilaterals, each cut into 4 x 4 smaller ones.
+[[nodiscard]] inline InterfaceDistance interface_distance(const mesh::QuadSurface& quads,
+                                                          const mesh::Surface& lumen,
+                                                          const FootFinder& finder) {
+  constexpr int parts = 4;
+  InterfaceDistance d;
+  mesh::QuadSurface fine;
+  fine.nodes.resize(3, quads.cells.cols() * (parts + 1) * (parts + 1));
+  fine.cells.resize(4, quads.cells.cols() * parts * parts);
+  Index node = 0, cell = 0;
+  for (Index q = 0; q < quads.cell_count(); ++q) {
+    const auto x = [&](int k) { return Vec3(quads.nodes.col(quads.cells(k, q))); };
+    const Index first = node;
+    for (int j = 0; j <= parts; ++j)
+      for (int i = 0; i <= parts; ++i) {
+        const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
+        const Vec3 p = (1 - v) * ((1 - u) * x(0) + u * x(1)) + v * ((1 - u) * x(3) + u * x(2));
+        fine.nodes.col(node++) = p;
+        const double away = finder.nearest(p).distance;
+        d.quads_rms += away * away;
+        if (away > d.quads_max) d.quads_max = away, d.quads_place = p;
+      }
+    for (int j = 0; j < parts; ++j)
+      for (int i = 0; i < parts; ++i) {
+        const Index a = first + i + (parts + 1) * j;
+        fine.cells.col(cell++) << a, a + 1, a + parts + 2, a + parts + 1;
+      }
+  }
+  d.quads_rms = node > 0 ? std::sqrt(d.quads_rms / node) : 0;
+
+  const mesh::Surface triangles = split_quads(fine);
+  const FootFinder back(triangles);
+  std::vector<char> wall(static_cast<std::size_t>(lumen.node_count()), 0);
+  for (Index t = 0; t < lumen.cell_count(); ++t)
+    if (lumen.region_of(t) == 0)
+      for (int k = 0; k < 3; ++k) wall[static_cast<std::size_t>(lumen.cells(k, t))] = 1;
+  Index count = 0;
+  for (Index n = 0; n < lumen.node_count(); ++n) {
+    if (wall[static_cast<std::size_t>(n)] == 0) continue;
+    ++count;
+    const double away = back.nearest(lumen.nodes.col(n)).distance;
+    d.wall_rms += away * away;
+    if (away > d.wall_max) d.wall_max = away, d.wall_place = lumen.nodes.col(n);
+  }
+  d.wall_rms = count > 0 ? std::sqrt(d.wall_rms / count) : 0;
+  return d;
+}
+
+}  // namespace tunica::meshing

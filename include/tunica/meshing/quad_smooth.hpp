@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+// Smoothing of a sheet of quadrilaterals on a surface: nodes slide on it, rims slide on their curves;
+// then the worst corners are improved by moves that are kept only if they raise the worst.
+#pragma once
+
+#include "tunica/mesh/mesh.hpp"
+#include "tunica/meshing/quad_adjacency.hpp"
+#include "tunica/meshing/rim_curve.hpp"
+#include "tunica/meshing/surface_foot.hpp"
+#include "tunica/meshing/wall_quads.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace tunica::meshing {
+
+struct QuadSmoothOptions {
+  int sweeps = 12;           // of plain smoothing
+  int repairs = 30;          // sweeps over the worst corners at most
+  double good_corner = 0.8;  // corners with a scaled Jacobian above this are left alone
+  double reach = 0.5;        // how far a node may go from its place in the contour [mean edge lengths]: it
+                             // stays on its branch, however small; nodes near a rim are free
+  double good_fit =
+      0.08;  // quadrilaterals nearer to the surface than this are left alone [mean edge lengths]
+};
+
+namespace detail {
+
+class QuadSmoother {
+ public:
+  QuadSmoother(WallQuads& wall, const FootFinder& lumen, const Rims& rims, double reach)
+      : wall_(wall),
+        lumen_(lumen),
+        rims_(rims),
+        around_(mesh::cells_of_nodes(wall.cells, static_cast<Index>(wall.nodes.cols()))),
+        neighbours_(quad_neighbours(wall.cells, static_cast<Index>(wall.nodes.cols()))),
+        fixed_(static_cast<std::size_t>(wall.nodes.cols()), 0),
+        normal_(static_cast<std::size_t>(wall.nodes.cols()), Vec3::Zero()) {
+    for (const auto& loop : wall.loops)
+      for (const Index n : loop) fixed_[static_cast<std::size_t>(n)] = 1;
+    for (Index n = 0; n < around_.size(); ++n) {
+      const Foot foot = lumen_.nearest(wall_.nodes.col(n));
+      normal_[static_cast<std::size_t>(n)] = foot.normal;
+      if (!fixed(n)) wall_.nodes.col(n) = foot.point;
+    }
+    home_ = wall.nodes;
+    set_reach(reach);
+  }
+
+  /// Each node goes to the mean of its neighbours, and back onto the surface.
+  void sweep() {
+    for (Index n = 0; n < around_.size(); ++n)
+      if (!fixed(n)) place(n, mean(n));
+    slide_rims();
+  }
+
+  /// One pass over the nodes whose corners or distances are not good; how many of them moved.
+  Index repair(const QuadSmoothOptions& options) {
+    const auto score = [&](Index n) {
+      const double misfit = std::max(0.0, worst_distance(n) / edge_ - options.good_fit);
+      return std::min(worst_corner(n), options.good_corner) - misfit_weight * misfit;
+    };
+    Index moved = 0;
+    for (Index n = 0; n < around_.size(); ++n) {
+      if (fixed(n)) continue;
+      const double before = score(n);
+      if (before >= options.good_corner) continue;
+      const Vec3 x = wall_.nodes.col(n), normal = normal_[static_cast<std::size_t>(n)];
+      const Vec3 to_mean = mean(n) - x;
+      double reach = std::numeric_limits<double>::infinity();
+      for (const Index m : neighbours_[n]) reach = std::min(reach, (wall_.nodes.col(m) - x).norm());
+      const Vec3 u = normal.unitOrthogonal() * reach, v = normal.cross(u);
+      const std::array<Vec3, 11> tries{to_mean,  0.5 * to_mean, 0.25 * to_mean, 0.2 * u,  -0.2 * u, 0.2 * v,
+                                       -0.2 * v, 0.05 * u,      -0.05 * u,      0.05 * v, -0.05 * v};
+      double best = before;
+      Vec3 best_x = x, best_n = normal;
+      for (const Vec3& step : tries) {
+        place(n, x + step);
+        const double quality = score(n);
+        if (quality > best + 1e-3)
+          best = quality, best_x = wall_.nodes.col(n), best_n = normal_[static_cast<std::size_t>(n)];
+      }
+      wall_.nodes.col(n) = best_x, normal_[static_cast<std::size_t>(n)] = best_n;
+      moved += best > before ? 1 : 0;
+    }
+    return moved;
+  }
+
+  [[nodiscard]] double worst_corner(Index node) const {
+    double worst = 1;
+    for (const Index q : around_[node])
+      for (int k = 0; k < 4; ++k) worst = std::min(worst, corner(q, k));
+    return worst;
+  }
+
+  /// Largest distance from the surface of the middles of the faces at a node and of their edges.
+  [[nodiscard]] double worst_distance(Index node) const {
+    double worst = 0;
+    const auto probe = [&](const Vec3& x) { worst = std::max(worst, lumen_.distance(x)); };
+    for (const Index q : around_[node]) {
+      const auto x = [&](int k) { return Vec3(wall_.nodes.col(wall_.cells(k % 4, q))); };
+      probe(0.25 * (x(0) + x(1) + x(2) + x(3)));
+      for (int k = 0; k < 4; ++k)
+        if (wall_.cells(k, q) == node) probe(0.5 * (x(k) + x(k + 1)));
+    }
+    return worst;
+  }
+
+ private:
+  [[nodiscard]] bool fixed(Index n) const { return fixed_[static_cast<std::size_t>(n)] != 0; }
+
+  /// Sine of the angle at corner k of q about the surface's normal: 1 square, <= 0 folded.
+  [[nodiscard]] double corner(Index q, int k) const {
+    const Index n = wall_.cells(k, q);
+    const Vec3 x = wall_.nodes.col(n);
+    const Vec3 u = wall_.nodes.col(wall_.cells((k + 1) % 4, q)) - x,
+               v = wall_.nodes.col(wall_.cells((k + 3) % 4, q)) - x;
+    const double size = u.norm() * v.norm();
+    return size > 0 ? u.cross(v).dot(normal_[static_cast<std::size_t>(n)]) / size : 0;
+  }
+
+  [[nodiscard]] Vec3 mean(Index n) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Index m : neighbours_[n]) sum += wall_.nodes.col(m);
+    return sum / static_cast<double>(neighbours_[n].size());
+  }
+
+  void set_reach(double reach) {
+    double sum = 0;
+    for (Index n = 0; n < neighbours_.size(); ++n)
+      for (const Index m : neighbours_[n]) sum += (home_.col(n) - home_.col(m)).norm();
+    edge_ = sum / static_cast<double>(std::max<std::size_t>(1, neighbours_.item.size()));
+    reach *= edge_;
+    reach_.assign(fixed_.size(), reach);
+    std::vector<char> near(fixed_.begin(), fixed_.end());
+    for (int ring = 0; ring < 3; ++ring) {
+      const auto before = near;
+      for (Index n = 0; n < neighbours_.size(); ++n)
+        for (const Index m : neighbours_[n])
+          if (before[static_cast<std::size_t>(m)] != 0) near[static_cast<std::size_t>(n)] = 1;
+    }
+    for (std::size_t n = 0; n < near.size(); ++n)
+      if (near[n] != 0) reach_[n] = std::numeric_limits<double>::infinity();
+  }
+
+  void place(Index n, Vec3 x) {
+    const Vec3 home = home_.col(n), way = x - home;
+    const double reach = reach_[static_cast<std::size_t>(n)], far = way.norm();
+    if (far > reach) x = home + way * (reach / far);
+    const Foot foot = lumen_.nearest_facing(x, normal_[static_cast<std::size_t>(n)]);
+    wall_.nodes.col(n) = foot.point;
+    normal_[static_cast<std::size_t>(n)] = foot.normal;
+  }
+
+  /// Half way between the neighbours on the rim, half below the node inside.
+  void slide_rims() {
+    for (std::size_t r = 0; r < wall_.loops.size(); ++r) {
+      const auto& loop = wall_.loops[r];
+      auto& along = wall_.along[r];
+      const RimCurve& curve = rims_.curves[r];
+      const std::size_t m = loop.size();
+      for (std::size_t i = 0; i < m; ++i) {
+        const double before = along[(i + m - 1) % m], after = along[(i + 1) % m];
+        double target = along[i] + 0.5 * (curve.way(along[i], before) + curve.way(along[i], after));
+        int inner = 0;
+        Vec3 below = Vec3::Zero();
+        for (const Index n : neighbours_[loop[i]])
+          if (!fixed(n)) below += wall_.nodes.col(n), ++inner;
+        if (inner > 0) target += 0.5 * curve.way(target, curve.nearest(below / inner));
+        const double lo = curve.way(along[i], before), hi = curve.way(along[i], after);
+        along[i] += std::clamp(curve.way(along[i], target), 0.5 * lo, 0.5 * hi);
+        wall_.nodes.col(loop[i]) = curve.at(along[i]);
+        normal_[static_cast<std::size_t>(loop[i])] = lumen_.nearest(wall_.nodes.col(loop[i])).normal;
+      }
+    }
+  }
+
+  WallQuads& wall_;
+  const FootFinder& lumen_;
+  const Rims& rims_;
+  mesh::Rows around_, neighbours_;
+  std::vector<char> fixed_;
+  std::vector<Vec3> normal_;
+  Points<3> home_;
+  std::vector<double> reach_;
+  double edge_ = 0;  // mean length
+  static constexpr double misfit_weight =
+      2;  // a tenth of an edge weighs as much as a fifth in the sine of a corner
+};
+
+}  // namespace detail
+
+/// Worst corner (sine of its angle about the surface's normal) before and after, and passes made.
+struct [[nodiscard]] QuadSmoothReport {
+  double worst_before = 0, worst_after = 0;
+  int repairs = 0;
+};
+
+/// Slides the nodes on the surface, the rims on their curves; nodes end on the surface.
+inline QuadSmoothReport smooth_quads(WallQuads& wall, const FootFinder& lumen, const Rims& rims,
+                                     const QuadSmoothOptions& options = {}) {
+  detail::QuadSmoother smoother(wall, lumen, rims, options.reach);
+  const auto worst = [&] {
+    double least = 1;
+    for (Index n = 0; n < static_cast<Index>(wall.nodes.cols()); ++n)
+      least = std::min(least, smoother.worst_corner(n));
+    return least;
+  };
+  QuadSmoothReport report;
+  for (int i = 0; i < options.sweeps; ++i) smoother.sweep();
+  report.worst_before = worst();
+  while (report.repairs < options.repairs && smoother.repair(options) > 0) ++report.repairs;
+  report.worst_after = worst();
+  return report;
+}
+
+}  // namespace tunica::meshing

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// The point of a triangulated surface nearest to a given one, with the smooth normal there.
+#pragma once
+
+#include "tunica/core/expect.hpp"
+#include "tunica/mesh/measures.hpp"
+#include "tunica/mesh/mesh.hpp"
+#include "tunica/meshing/vertex_normals.hpp"
+#include "tunica/search/octree.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace tunica::meshing {
+
+/// The nearest point, the interpolated unit normal there, and the distance.
+struct Foot {
+  Vec3 point, normal;
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+/// The triangles of one region of a surface, ready to be asked.
+class FootFinder {
+ public:
+  explicit FootFinder(const mesh::Surface& surface, Index region = 0)
+      : surface_(surface), normals_(region_vertex_normals(surface)), region_(region) {
+    std::vector<Box> boxes;
+    for (Index t = 0; t < surface.cell_count(); ++t) {
+      if (surface.region_of(t) != region) continue;
+      triangles_.push_back(t);
+      boxes.push_back(mesh::triangle(surface, t).box());
+    }
+    tree_ = search::Octree(boxes);
+  }
+
+  [[nodiscard]] bool empty() const { return triangles_.empty(); }
+
+  [[nodiscard]] Foot nearest(const Vec3& x, double bound = std::numeric_limits<double>::infinity()) const {
+    return foot(x, tree_.nearest(
+                       x, [&](Index i) { return squared(x, i); }, bound * bound));
+  }
+
+  [[nodiscard]] double distance(const Vec3& x) const {
+    return std::sqrt(tree_.nearest(x, [&](Index i) { return squared(x, i); }).squared_distance);
+  }
+
+  /// The nearest among the triangles that face the same way as the normal: not the far side of a fold.
+  [[nodiscard]] Foot nearest_facing(const Vec3& x, const Vec3& normal) const {
+    const auto found = tree_.nearest(x, [&](Index i) {
+      const bool facing = triangle(i).area_vector().dot(normal) > 0;
+      return facing ? squared(x, i) : std::numeric_limits<double>::infinity();
+    });
+    return found.item >= 0 && std::isfinite(found.squared_distance) ? foot(x, found) : nearest(x);
+  }
+
+ private:
+  [[nodiscard]] mesh::Triangle triangle(Index item) const {
+    return mesh::triangle(surface_, triangles_[static_cast<std::size_t>(item)]);
+  }
+  [[nodiscard]] double squared(const Vec3& x, Index item) const {
+    const auto t = triangle(item);
+    return (t.at(t.nearest(x)) - x).squaredNorm();
+  }
+  [[nodiscard]] Foot foot(const Vec3& x, const search::Nearest& found) const {
+    if (found.item < 0) return {x, Vec3::Zero()};
+    const auto t = triangle(found.item);
+    const Vec3 weights = t.nearest(x);
+    Vec3 n = Vec3::Zero();
+    for (int k = 0; k < 3; ++k)
+      n += weights[k] *
+           normals_.of(region_, surface_.cells(k, triangles_[static_cast<std::size_t>(found.item)]));
+    const Vec3 p = t.at(weights);
+    return {p, n.norm() > 0 ? Vec3(n.normalized()) : Vec3(t.area_vector().normalized()), (p - x).norm()};
+  }
+
+  const mesh::Surface& surface_;
+  RegionNormals normals_;
+  Index region_;
+  std::vector<Index> triangles_;
+  search::Octree tree_;
+};
+
+}  // namespace tunica::meshing
