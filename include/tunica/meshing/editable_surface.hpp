@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: MIT
+// A closed triangle surface that can be edited: split, collapse, flip and move, each only if no triangle
+// turns over or crosses another; what was left out is counted.
+#pragma once
+
+#include "tunica/meshing/facets.hpp"
+#include "tunica/meshing/intersections.hpp"
+#include "tunica/meshing/triangle_grid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace tunica::meshing {
+
+/// Edits that were left out, by the reason.
+struct LeftOut {
+  Index folds = 0;    // a triangle would have turned over or lost its shape
+  Index crosses = 0;  // the surface would have crossed itself
+};
+
+/// How a node is bound: inside a facet, on the rim of two, or where more meet.
+enum class NodeKind : std::uint8_t { facet, rim, corner };
+
+class EditableSurface {
+ public:
+  using Nodes = std::array<Index, 3>;
+
+  EditableSurface(const mesh::Surface& s, const Facets& facets, double edge)
+      : grid_(mesh::bounding_box(s.nodes), edge), facet_size_(facets.region.size(), 0) {
+    for (Index n = 0; n < s.node_count(); ++n) x_.push_back(s.nodes.col(n));
+    ring_.resize(x_.size());
+    for (Index t = 0; t < s.cell_count(); ++t)
+      insert({s.cells(0, t), s.cells(1, t), s.cells(2, t)}, facets.of[static_cast<std::size_t>(t)]);
+  }
+
+  [[nodiscard]] Index node_count() const { return static_cast<Index>(x_.size()); }
+  [[nodiscard]] Index triangle_count() const { return static_cast<Index>(triangle_.size()); }
+  [[nodiscard]] bool alive(Index t) const { return facet_[at(t)] >= 0; }
+  [[nodiscard]] bool used(Index n) const { return !ring_[at(n)].empty(); }
+  [[nodiscard]] const Vec3& x(Index n) const { return x_[at(n)]; }
+  [[nodiscard]] const Nodes& nodes(Index t) const { return triangle_[at(t)]; }
+  [[nodiscard]] Index facet(Index t) const { return facet_[at(t)]; }
+  [[nodiscard]] const std::vector<Index>& ring(Index n) const { return ring_[at(n)]; }
+  [[nodiscard]] const LeftOut& left_out() const { return left_out_; }
+  [[nodiscard]] double length(Index a, Index b) const { return (x(b) - x(a)).norm(); }
+  [[nodiscard]] mesh::Triangle triangle(const Nodes& v) const { return {x(v[0]), x(v[1]), x(v[2])}; }
+  [[nodiscard]] mesh::Triangle triangle(Index t) const { return triangle(nodes(t)); }
+
+  /// The triangles of an edge, the first runs it from a to b; {-1, -1} where there is no such edge.
+  [[nodiscard]] std::array<Index, 2> sides(Index a, Index b) const {
+    std::array<Index, 2> s{-1, -1};
+    for (const Index t : ring_[at(a)])
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (nodes(t)[k] == a && nodes(t)[(k + 1) % 3] == b) s[0] = t;
+        if (nodes(t)[k] == b && nodes(t)[(k + 1) % 3] == a) s[1] = t;
+      }
+    return s;
+  }
+  [[nodiscard]] bool on_rim(Index a, Index b) const {
+    const auto [s, t] = sides(a, b);
+    return s >= 0 && facet(s) != facet(t);
+  }
+  [[nodiscard]] Index opposite(Index t, Index a, Index b) const {
+    for (const Index n : nodes(t))
+      if (n != a && n != b) return n;
+    return -1;
+  }
+
+  [[nodiscard]] std::vector<Index> neighbours(Index n) const {
+    std::vector<Index> m;  // each triangle gives the node that follows n
+    for (const Index t : ring_[at(n)])
+      for (std::size_t k = 0; k < 3; ++k)
+        if (nodes(t)[k] == n) m.push_back(nodes(t)[(k + 1) % 3]);
+    return m;
+  }
+
+  /// Facets at a node, ascending.
+  [[nodiscard]] std::vector<Index> facets_at(Index n) const {
+    std::vector<Index> f;
+    for (const Index t : ring_[at(n)]) f.push_back(facet(t));
+    std::sort(f.begin(), f.end());
+    f.erase(std::unique(f.begin(), f.end()), f.end());
+    return f;
+  }
+
+  /// Neighbours along rims.
+  [[nodiscard]] std::vector<Index> rim_neighbours(Index n) const {
+    std::vector<Index> r;
+    for (const Index m : neighbours(n))
+      if (on_rim(n, m)) r.push_back(m);
+    return r;
+  }
+
+  [[nodiscard]] NodeKind kind(Index n) const {
+    const Index first = facet(ring_[at(n)].front());
+    bool one = true;
+    for (const Index t : ring_[at(n)]) one = one && facet(t) == first;
+    if (one) return NodeKind::facet;
+    return facets_at(n).size() == 2 && rim_neighbours(n).size() == 2 ? NodeKind::rim : NodeKind::corner;
+  }
+
+  /// Moves a node.
+  bool move(Index n, const Vec3& to) {
+    std::vector<Nodes> made;
+    for (const Index t : ring_[at(n)]) made.push_back(nodes(t));
+    const std::vector<Index> gone = ring_[at(n)];
+    const Vec3 from = x_[at(n)];
+    const auto normals = facet_normals(gone);
+    x_[at(n)] = to;
+    if (!allowed(made, gone, normals, most_turn)) {
+      x_[at(n)] = from;
+      return false;
+    }
+    x_[at(n)] = from;
+    for (const Index t : gone) grid_.remove(t);
+    x_[at(n)] = to;
+    for (const Index t : gone) grid_.add(t, triangle(t).box());
+    return true;
+  }
+
+  /// A new node on edge ab; its number, -1 if left out.
+  Index split(Index a, Index b, const Vec3& place) {
+    const auto [s, t] = sides(a, b);
+    const Index c = opposite(s, a, b), d = opposite(t, a, b), n = node_count();
+    const std::vector<Index> gone{s, t};
+    const auto normals = facet_normals(gone);
+    x_.push_back(place), ring_.emplace_back();
+    const std::vector<Nodes> made{{a, n, c}, {n, b, c}, {b, n, d}, {n, a, d}};
+    const Index fs = facet(s), ft = facet(t);
+    if (!allowed(made, gone, normals, most_turn)) {
+      x_.pop_back(), ring_.pop_back();
+      return -1;
+    }
+    erase(s), erase(t);
+    insert(made[0], fs), insert(made[1], fs), insert(made[2], ft), insert(made[3], ft);
+    return n;
+  }
+
+  /// Node b is merged into node a, which moves to `place`.
+  bool collapse(Index a, Index b, const Vec3& place) {
+    auto na = neighbours(a), nb = neighbours(b);
+    std::sort(na.begin(), na.end()), std::sort(nb.begin(), nb.end());
+    std::vector<Index> common;
+    std::set_intersection(na.begin(), na.end(), nb.begin(), nb.end(), std::back_inserter(common));
+    const auto [s, t] = sides(a, b);
+    if (common.size() != 2 || facet_size_[at(facet(s))] <= 4 || facet_size_[at(facet(t))] <= 4) return false;
+    for (const Index c : common)
+      if (ring_[at(c)].size() <= 3) return false;
+    std::vector<Index> gone = ring_[at(a)];
+    for (const Index f : ring_[at(b)])
+      if (f != s && f != t) gone.push_back(f);
+    std::vector<Nodes> made;
+    std::vector<Index> facet_of_made;
+    for (const Index f : gone) {
+      if (f == s || f == t) continue;
+      Nodes v = nodes(f);
+      for (Index& n : v) n = n == b ? a : n;
+      made.push_back(v), facet_of_made.push_back(facet(f));
+    }
+    const Vec3 from = x_[at(a)];
+    const auto normals = facet_normals(gone);
+    x_[at(a)] = place;
+    const bool good = allowed(made, gone, normals, most_turn, facet_of_made);
+    x_[at(a)] = from;
+    if (!good) return false;
+    for (const Index f : gone) erase(f);
+    x_[at(a)] = place;
+    for (std::size_t i = 0; i < made.size(); ++i) insert(made[i], facet_of_made[i]);
+    return true;
+  }
+
+  /// Turns the edge ab of triangles abc and bad to cd.
+  bool flip(Index a, Index b) {
+    const auto [s, t] = sides(a, b);
+    const Index c = opposite(s, a, b), d = opposite(t, a, b), f = facet(s);
+    if (f != facet(t) || sides(c, d)[0] >= 0 || ring_[at(a)].size() <= 3 || ring_[at(b)].size() <= 3)
+      return false;
+    const std::vector<Index> gone{s, t};
+    const std::vector<Nodes> made{{a, d, c}, {d, b, c}};
+    if (!allowed(made, gone, facet_normals(gone), flip_turn)) return false;
+    erase(s), erase(t);
+    insert(made[0], f), insert(made[1], f);
+    return true;
+  }
+
+  /// The surface as it is now, nodes in their order; regions from the facets.
+  [[nodiscard]] mesh::Surface surface(const Facets& facets, const std::vector<std::string>& names) const {
+    mesh::Surface r;
+    std::vector<Index> number(x_.size(), -1);
+    Index count = 0, cells = 0;
+    for (Index n = 0; n < node_count(); ++n)
+      if (used(n)) number[at(n)] = count++;
+    for (Index t = 0; t < triangle_count(); ++t) cells += alive(t);
+    r.nodes.resize(3, count), r.cells.resize(3, cells);
+    for (Index n = 0; n < node_count(); ++n)
+      if (used(n)) r.nodes.col(number[at(n)]) = x(n);
+    Index to = 0;
+    for (Index t = 0; t < triangle_count(); ++t) {
+      if (!alive(t)) continue;
+      for (std::size_t k = 0; k < 3; ++k) r.cells(static_cast<Index>(k), to) = number[at(nodes(t)[k])];
+      r.region.push_back(facets.region[at(facet(t))]);
+      ++to;
+    }
+    r.region_names = names;
+    return r;
+  }
+
+ private:
+  // a triangle may turn from the mean normal of its facet about the edit by at most 75 degrees (cosine); a
+  // flip, whose two triangles are nearly in one plane, by 45
+  static constexpr double most_turn = 0.26, flip_turn = 0.7;
+
+  [[nodiscard]] static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+  using FacetNormals = std::vector<std::pair<Index, Vec3>>;
+
+  [[nodiscard]] FacetNormals facet_normals(const std::vector<Index>& triangles) const {
+    FacetNormals normals;
+    for (const Index t : triangles) {
+      auto it =
+          std::find_if(normals.begin(), normals.end(), [&](const auto& n) { return n.first == facet(t); });
+      if (it == normals.end()) it = normals.insert(it, {facet(t), Vec3::Zero()});
+      it->second += triangle(t).area_vector();
+    }
+    return normals;
+  }
+
+  /// The triangles `made` may take the place of those `gone`. made_facet: of each; empty: as those gone, in
+  /// order (half of them each when there are more).
+  [[nodiscard]] bool allowed(const std::vector<Nodes>& made, const std::vector<Index>& gone,
+                             const FacetNormals& normals, double least_cosine,
+                             const std::vector<Index>& made_facet = {}) {
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      const Index f = made_facet.empty() ? facet(gone[i * gone.size() / made.size()]) : made_facet[i];
+      const auto n =
+          std::find_if(normals.begin(), normals.end(), [&](const auto& p) { return p.first == f; });
+      const Vec3 a = triangle(made[i]).area_vector();
+      if (!(a.dot(n->second) > least_cosine * a.norm() * n->second.norm())) {
+        ++left_out_.folds;
+        return false;
+      }
+    }
+    const auto position = [&](Index n) { return x(n); };
+    for (const Nodes& v : made)
+      if (grid_.any(triangle(v).box(), [&](Index t) {
+            return std::find(gone.begin(), gone.end(), t) == gone.end() && cross(v, nodes(t), position);
+          })) {
+        ++left_out_.crosses;
+        return false;
+      }
+    return true;
+  }
+
+  void insert(const Nodes& v, Index facet) {
+    const Index t = triangle_count();
+    triangle_.push_back(v), facet_.push_back(facet);
+    for (const Index n : v) ring_[at(n)].push_back(t);
+    grid_.add(t, triangle(v).box());
+    ++facet_size_[at(facet)];
+  }
+
+  void erase(Index t) {
+    grid_.remove(t);
+    for (const Index n : nodes(t)) {
+      auto& r = ring_[at(n)];
+      r.erase(std::find(r.begin(), r.end(), t));
+    }
+    --facet_size_[at(facet(t))];
+    facet_[at(t)] = -1;
+  }
+
+  std::vector<Vec3> x_;
+  std::vector<Nodes> triangle_;
+  std::vector<Index> facet_;  // -1: erased
+  std::vector<std::vector<Index>> ring_;
+  TriangleGrid grid_;
+  std::vector<Index> facet_size_;
+  LeftOut left_out_;
+};
+
+}  // namespace tunica::meshing
