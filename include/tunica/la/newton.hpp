@@ -14,6 +14,9 @@
 
 namespace tunica::la {
 
+/// The `step` of a residual that lies on no step: a start.
+inline constexpr double no_step = -1;
+
 /// A residual's side information.
 struct ResidualInfo {
   bool admissible = true;  // false where the problem is not defined (a cell with J <= 0)
@@ -25,7 +28,7 @@ struct ResidualInfo {
 /// r(x) = 0 with r = 0 kept for prescribed unknowns; `tangent` fills A = dr/dx at x, the rows and
 /// columns of prescribed unknowns being those of a diagonal matrix; `pattern` is a matrix of A's
 /// pattern. `direction` announces the step dx that leaves x, and `residual` is told how far along
-/// it x is (0: at the start), so that a problem with condensed unknowns can carry them along.
+/// it x is (or no_step), so that a problem with condensed unknowns can carry them along.
 template <class P>
 concept NonlinearProblem = requires(P problem, const Eigen::VectorXd& x, Eigen::VectorXd& r,
                                     SparseMatrix& A) {
@@ -41,7 +44,7 @@ struct NewtonOptions {
   int max_iterations = 30;             // linear solves
   int max_cuts = 12;                   // of one step by the line search
   double growth = 2;                   // of the merit in one step, above which the step is cut
-  double refresh_above = 0;            // contraction of the merit above which the tangent is made anew; 0: always
+  double refresh_above = 0;  // contraction of the merit above which the tangent is made anew; 0: always
 };
 
 struct [[nodiscard]] NewtonReport {
@@ -85,16 +88,18 @@ class Newton {
       if (status != Status::converged) forget();
       return report;
     };
-    ResidualInfo info = problem.residual(x, r_, 0);
+    ResidualInfo info = problem.residual(x, r_, no_step);
     double size = r_.norm();
     double relative = size > 0 ? size / info.scale : size;
     report.history.push_back(relative);
     report.inadmissible = !info.admissible;
-    if (!info.admissible || !std::isfinite(relative)) return ended(Status::diverged, relative);
+    if (!info.admissible || !std::isfinite(relative) || !std::isfinite(info.scale))
+      return ended(Status::diverged, relative);
 
     for (int& k = report.solve.iterations; !(relative <= options_.tolerance || size <= info.rounding);) {
       if (k == options_.max_iterations) return ended(Status::max_iterations, relative);
-      if (!fresh_enough_) {
+      const bool made_now = !fresh_enough_;
+      if (made_now) {
         if (!factorise(problem, x)) return ended(Status::diverged, relative);
         ++report.factorisations;
       }
@@ -104,22 +109,33 @@ class Newton {
       problem.direction(x, dx_);
       const double old_merit = info.merit;
       double s = 1;
+      bool refused = false;  // by the line search, on account of an old tangent
       for (int cut = 0;; ++cut) {
         trial_ = x + s * dx_;
         info = problem.residual(trial_, r_, s);
         size = r_.norm();
         const bool usable = info.admissible && std::isfinite(size);
         if (usable && info.merit <= options_.growth * old_merit) break;
+        if (!made_now) {
+          refused = true;
+          break;
+        }
         if (cut == options_.max_cuts) {
           report.inadmissible = !info.admissible;
           return ended(Status::diverged, relative);
         }
         s *= 0.5;
       }
+      if (refused) {
+        forget();
+        info = problem.residual(x, r_, 0);
+        size = r_.norm();
+        continue;
+      }
       x = trial_;
       relative = size > 0 ? size / info.scale : size;
       report.history.push_back(relative);
-      if (!std::isfinite(relative)) return ended(Status::diverged, relative);
+      if (!std::isfinite(info.scale)) return ended(Status::diverged, relative);
       const double moved = s * dx_.lpNorm<Eigen::Infinity>();
       if (s == 1 && moved <= options_.increment_tolerance * x.lpNorm<Eigen::Infinity>()) break;
       if (!(info.merit <= options_.refresh_above * old_merit)) forget();

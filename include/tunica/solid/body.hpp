@@ -76,7 +76,7 @@ class Body {
   }
 
   /// f = internal forces at displacement u [N]. False if a cell has J <= 0 or NaN: see inverted_cell().
-  /// `step`: how far u is along the last direction(), 0 for a state of its own; f_predicted is f with
+  /// `step`: how far u is along the last direction(), or la::no_step; f_predicted is f with
   /// the pressures predicted along that step in place of U'(theta).
   [[nodiscard]] bool internal_forces(const Eigen::VectorXd& u, double step, Eigen::VectorXd& f,
                                      Eigen::VectorXd& f_predicted) {
@@ -89,7 +89,7 @@ class Body {
       // theta is known to a few roundings only, and the pressure to kappa times as much.
       cell.rounding =
           roundings * std::numeric_limits<double>::epsilon() * element.bulk * element.volume_slope.norm();
-      cell.predicted = step == 0 ? element.p : cell.start + step * (cell.target - cell.start);
+      cell.predicted = step < 0 ? element.p : cell.start + step * (cell.target - cell.start);
       assembly_.add(e, element.force, f);
       assembly_.add(e, (element.force + (cell.predicted - element.p) * element.volume_slope).eval(),
                     f_predicted);

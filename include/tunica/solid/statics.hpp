@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -129,7 +130,7 @@ class Statics {
       const bool admissible = s.body_.internal_forces(u, step, r, s.predicted_);
       s.external_ = (1 - t) * s.dead_start_ + t * s.dead_end_;
       s.body_.add_pressure_forces(u, pressures(), s.external_);
-      const double scale = std::max(r.norm(), s.external_.norm());
+      const double scale = std::hypot(r.norm(), s.external_.norm());
       r -= s.external_;
       s.predicted_ -= s.external_;
       s.body_.clear_fixed(r);
@@ -168,7 +169,8 @@ class Statics {
     // K d by a difference of the forces along d: a length of 1e-7 of it is exact enough for a start.
     constexpr double length = 1e-7;
     Eigen::VectorXd r0, r1, dx;
-    if (!problem.residual(u, r0, 0).admissible || !problem.residual(u + length * d, r1, 0).admissible)
+    if (!problem.residual(u, r0, la::no_step).admissible ||
+        !problem.residual(u + length * d, r1, la::no_step).admissible)
       return false;
     la::SparseMatrix A = body_.pattern();
     problem.tangent(u, A);

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "tunica/meshing/box.hpp"
+#include "tunica/solid/dynamics.hpp"
+#include "tunica/solid/laws.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace tunica;
+
+namespace {
+
+const solid::Hyperelastic rubber{solid::Yeoh{.c10 = 174e3, .c20 = 1880e3},
+                                 solid::SimoTaylor{.kappa = 3480e3}};
+
+/// A column of 1 x 1 x 3 cm, held at its foot, hit sideways: it bends to and fro by a third of its width.
+struct Column {
+  mesh::HexMesh mesh = meshing::box_hexes(
+      meshing::Block{.cells = {2, 2, 4}, .lo = Vec3::Zero(), .hi = Vec3(0.01, 0.01, 0.03)});
+
+  solid::Dynamics<mesh::Hex8, solid::Hyperelastic<solid::Yeoh, solid::SimoTaylor>> start(
+      double rho_inf) const {
+    solid::DynamicsOptions options;
+    options.scheme.rho_inf = rho_inf;
+    solid::Dynamics wall{mesh, rubber, 1100.0, options};
+    wall.fix(mesh.patch("z0"));
+    Points<3> u = Points<3>::Zero(3, mesh.node_count()), v = u;
+    for (Index n = 0; n < mesh.node_count(); ++n) v(0, n) = 3.0 * std::pow(mesh.nodes(2, n) / 0.03, 2);
+    REQUIRE(wall.start(u, v));
+    return wall;
+  }
+};
+
+struct End {
+  Points<3> u, v;
+};
+
+End run(const Column& column, double rho_inf, double time, int steps) {
+  auto wall = column.start(rho_inf);
+  for (int k = 0; k < steps; ++k) REQUIRE(wall.step(time / steps));
+  return {wall.nodal_displacement(), wall.nodal_velocity()};
+}
+
+}  // namespace
+
+TEST_SUITE("convergence") {
+  TEST_CASE("solid: generalised alpha is of second order on a large oscillation") {
+    const Column column;
+    const double time = 4e-3;
+    const End reference = run(column, 1.0, time, 5120);
+    for (const double rho : {0.0, 0.5, 1.0}) {
+      std::vector<double> errors, velocity_errors;
+      for (const int steps : {160, 320, 640}) {
+        const End end = run(column, rho, time, steps);
+        errors.push_back((end.u - reference.u).norm() / reference.u.norm());
+        velocity_errors.push_back((end.v - reference.v).norm() / reference.v.norm());
+      }
+      for (std::size_t k = 1; k < errors.size(); ++k) {
+        const double order = std::log2(errors[k - 1] / errors[k]);
+        const double velocity_order = std::log2(velocity_errors[k - 1] / velocity_errors[k]);
+        MESSAGE("rho_inf " << rho << ": displacement error " << errors[k] << " order " << order
+                           << ", velocity " << velocity_errors[k] << " order " << velocity_order);
+        if (k + 1 == errors.size()) {
+          CHECK(order == doctest::Approx(2).epsilon(0.1));
+          CHECK(velocity_order == doctest::Approx(2).epsilon(0.1));
+        }
+      }
+    }
+  }
+
+  TEST_CASE("solid: steps of changing length stay of second order") {
+    const Column column;
+    const double time = 4e-3;
+    const End reference = run(column, 0.5, time, 2560);
+    std::vector<double> errors;
+    for (const int steps : {80, 160, 320}) {
+      auto wall = column.start(0.5);
+      for (int k = 0; k < steps; ++k) REQUIRE(wall.step(time / steps * (k % 2 ? 1.2 : 0.8)));
+      errors.push_back((wall.nodal_displacement() - reference.u).norm() / reference.u.norm());
+    }
+    const double order = std::log2(errors[1] / errors[2]);
+    MESSAGE("errors " << errors[0] << " " << errors[1] << " " << errors[2] << " order " << order);
+    CHECK(order > 1.8);
+  }
+
+  TEST_CASE("solid: energy is kept by rho 1 and falls slowly with damping") {
+    const Column column;
+    double kept = 1.02;
+    for (const double rho : {1.0, 0.8, 0.5, 0.0}) {
+      auto wall = column.start(rho);
+      const double start = wall.kinetic_energy() + wall.strain_energy();
+      double highest = 0, lowest = 1, largest_u = 0;
+      for (int k = 0; k < 400; ++k) {
+        REQUIRE(wall.step(1e-4));
+        const double e = (wall.kinetic_energy() + wall.strain_energy()) / start;
+        highest = std::max(highest, e), lowest = std::min(lowest, e);
+        largest_u = std::max(largest_u, wall.nodal_displacement().cwiseAbs().maxCoeff());
+      }
+      MESSAGE("rho_inf " << rho << ": energy between " << lowest << " and " << highest
+                         << " of the start after "
+                         << "400 steps; largest displacement " << largest_u << " m");
+      CHECK(largest_u > 3e-3);
+      CHECK(highest < 1.02);
+      if (rho == 1.0) CHECK(lowest > 0.98);
+      CHECK(lowest < kept);  // the smaller rho_inf is, the more is lost
+      kept = lowest;
+    }
+  }
+}

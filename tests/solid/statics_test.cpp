@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "tunica/solid/statics.hpp"
+#include "tunica/meshing/box.hpp"
+#include "tunica/meshing/tube.hpp"
+#include "tunica/solid/laws.hpp"
+#include "tunica/solid/stress.hpp"
+
+#include <doctest/doctest.h>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace tunica;
+using namespace tunica::solid;
+
+namespace {
+
+const Hyperelastic wall_law{Yeoh{.c10 = 174e3, .c20 = 1880e3}, Quadratic{.kappa = 348e6}};
+
+bool on_box(const Vec3& x) {
+  return (x.array() <= 0).any() || (x.array() >= 1).any();
+}
+
+/// Cells of a unit box with the inner nodes moved at random.
+mesh::HexMesh distorted_box(int n, double by) {
+  auto mesh = meshing::box_hexes(n);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> jitter(-by / n, by / n);
+  for (Index k = 0; k < mesh.node_count(); ++k)
+    if (!on_box(mesh.nodes.col(k)))
+      for (int i = 0; i < 3; ++i) mesh.nodes(i, k) += jitter(random);
+  return mesh;
+}
+
+Eigen::Matrix3d gradient() {
+  Eigen::Matrix3d H;
+  H << 0.3, 0.2, -0.1, 0.1, -0.15, 0.2, -0.05, 0.1, 0.1;
+  return H;
+}
+
+}  // namespace
+
+TEST_SUITE("unit") {
+  TEST_CASE("solid: patch test with an affine displacement on distorted cells") {
+    const auto mesh = distorted_box(3, 0.25);
+    const Hyperelastic law{Yeoh{.c10 = 1, .c20 = 2}, SimoTaylor{.kappa = 100}};
+    const Eigen::Matrix3d H = gradient();
+    CHECK(H.norm() > 0.45);
+    Body body(mesh, law, 1.0, Mass::consistent);
+    const Points<3> exact = H * mesh.nodes;
+    Eigen::VectorXd f, predicted;
+    REQUIRE(body.internal_forces(exact.reshaped(), la::no_step, f, predicted));
+    double inside = 0;
+    for (Index n = 0; n < mesh.node_count(); ++n)
+      if (!on_box(mesh.nodes.col(n))) inside = std::max(inside, f.segment<3>(3 * n).norm());
+    MESSAGE("residual of the affine field at the inner nodes " << inside / f.norm());
+    CHECK(inside < 1e-13 * f.norm());
+
+    // It is also found: only the boundary is prescribed.
+    Statics statics{mesh, law, {.newton = {.tolerance = 1e-13}}};
+    for (Index n = 0; n < mesh.node_count(); ++n)
+      if (on_box(mesh.nodes.col(n)))
+        for (const Axis axis : {Axis::x, Axis::y, Axis::z})
+          statics.prescribe(n, axis, exact(static_cast<int>(axis), n));
+    const auto report = statics.solve();
+    REQUIRE(report);
+    const double error = (statics.displacement() - exact).cwiseAbs().maxCoeff();
+    MESSAGE("error of the solution " << error << ", order of Newton "
+                                     << la::observed_order(report.history, 1e-14));
+    CHECK(error < 1e-13);
+
+    // One stress everywhere, the one of the law by hand: sigma = U' 1 + 2/J dev(Phi_1 b).
+    const Eigen::Matrix3d F = Eigen::Matrix3d::Identity() + H, b = F * F.transpose();
+    const double J = F.determinant(), I1 = b.trace() * std::pow(J, -2. / 3);
+    const Eigen::Matrix3d deviatoric = b - b.trace() / 3 * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d sigma = 50 * (J - 1 / J) * Eigen::Matrix3d::Identity() +
+                                  2 / J * (1 + 4 * (I1 - 3)) * std::pow(J, -2. / 3) * deviatoric;
+    for (const auto& field :
+         {cell_stress(statics.body(), statics.unknowns()), nodal_stress(statics.body(), statics.unknowns())})
+      for (Eigen::Index k = 0; k < field.cols(); ++k)
+        CHECK((field.col(k) - symmetric_part<double>(sigma)).norm() < 1e-11 * sigma.norm());
+    const Eigen::Matrix3d s = sigma - sigma.trace() / 3 * Eigen::Matrix3d::Identity();
+    CHECK(von_mises(symmetric_part<double>(sigma)) == doctest::Approx(std::sqrt(1.5) * s.norm()));
+  }
+
+  TEST_CASE("solid: a body turned by prescribed displacements stays free of stress") {
+    const auto mesh = distorted_box(2, 0.25);
+    Statics statics{mesh, wall_law, {.first_step = 0.125}};
+    const Eigen::Matrix3d R = Eigen::AngleAxisd(1.0, Vec3(1, 1, 0).normalized()).toRotationMatrix();
+    for (Index n = 0; n < mesh.node_count(); ++n)
+      if (on_box(mesh.nodes.col(n)))
+        for (const Axis axis : {Axis::x, Axis::y, Axis::z})
+          statics.prescribe(n, axis, (R * mesh.nodes.col(n) - mesh.nodes.col(n))[static_cast<int>(axis)]);
+    REQUIRE(statics.solve());
+    const double worst = cell_stress(statics.body(), statics.unknowns()).cwiseAbs().maxCoeff();
+    MESSAGE("stress " << worst / 348e3 << " mu");
+    CHECK(worst < 1e-11 * 348e3);
+    CHECK((statics.displacement() - (R * mesh.nodes - mesh.nodes)).cwiseAbs().maxCoeff() < 1e-11);
+  }
+
+  TEST_CASE("solid: follower pressure has its exact stiffness and is symmetric on a held border") {
+    auto mesh =
+        meshing::tube({.inner_radius = 5e-3, .thickness = 1.5e-3, .length = 4e-3, .cells = {1, 8, 3}});
+    Body body(mesh, wall_law, 1.0, Mass::lumped);
+    body.add_pressure(mesh.patch("inner"));
+    const Eigen::VectorXd p = Eigen::VectorXd::Constant(1, 2e4);
+    Eigen::VectorXd u(body.unknowns());
+    for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = 2e-4 * std::sin(0.7 * static_cast<double>(k));
+    Eigen::VectorXd du(body.unknowns());
+    for (Eigen::Index k = 0; k < u.size(); ++k) du[k] = 1e-3 * std::cos(1.3 * static_cast<double>(k));
+
+    // The tangent with and without pressure differ by the load stiffness alone.
+    const auto load_stiffness = [&](bool symmetric) {
+      Eigen::VectorXd f, predicted;
+      REQUIRE(body.internal_forces(u, la::no_step, f, predicted));
+      la::SparseMatrix with = body.pattern(), without = body.pattern();
+      body.tangent(u, p, {.symmetric_load = symmetric}, with);
+      body.tangent(u, Eigen::VectorXd::Zero(1), {}, without);
+      return la::SparseMatrix(with - without);
+    };
+    const auto force = [&](const Eigen::VectorXd& at) {
+      Eigen::VectorXd f = Eigen::VectorXd::Zero(body.unknowns());
+      body.add_pressure_forces(at, p, f);
+      return f;
+    };
+    const double h = 1e-3;  // forces are quadratic in u: the central difference is exact
+    const Eigen::VectorXd slope = (force(u + h * du) - force(u - h * du)) / (2 * h);
+    const la::SparseMatrix K = load_stiffness(false);
+    CHECK((K * du + slope).norm() < 1e-9 * slope.norm());
+    // A closed surface under pressure is in balance; this one is short of its two ends, along z only.
+    const Eigen::VectorXd rest = force(Eigen::VectorXd::Zero(body.unknowns()));
+    Vec3 sum = Vec3::Zero();
+    for (Index n = 0; n < mesh.node_count(); ++n) sum += rest.segment<3>(3 * n);
+    CHECK(sum.norm() < 1e-12 * rest.norm());
+
+    for (const Index n : mesh::patch_nodes(mesh.patch("ends")))
+      for (const Axis axis : {Axis::x, Axis::y, Axis::z}) body.fix(n, axis);
+    const la::SparseMatrix held = load_stiffness(false);
+    CHECK(la::SparseMatrix(held - la::SparseMatrix(held.transpose())).norm() < 1e-9 * held.norm());
+    CHECK(la::SparseMatrix(held - load_stiffness(true)).norm() < 1e-9 * held.norm());
+    CHECK(la::SparseMatrix(K - la::SparseMatrix(K.transpose())).norm() > 1e-3 * K.norm());
+  }
+
+  TEST_CASE("solid: statics with Lu and with Ldlt agree and loads go up and down again") {
+    const auto mesh =
+        meshing::tube({.inner_radius = 5e-3, .thickness = 1.5e-3, .length = 8e-3, .cells = {1, 12, 4}});
+    const auto inflated = [&](auto& wall) {
+      wall.fix(mesh.patch("ends"));
+      wall.pressure(mesh.patch("inner"), 10e3);
+      REQUIRE(wall.solve());
+      return wall.displacement();
+    };
+    Statics symmetric{mesh, wall_law};
+    Statics<mesh::Hex8, decltype(wall_law), la::Lu> full{mesh, wall_law};
+    const Points<3> a = inflated(symmetric), b = inflated(full);
+    CHECK((a - b).norm() < 1e-9 * a.norm());
+    symmetric.pressure(0, 0);
+    REQUIRE(symmetric.solve());
+    CHECK(symmetric.displacement().norm() < 1e-8 * a.norm());
+  }
+
+  TEST_CASE("solid: a mesh with an inverted cell is refused by name") {
+    auto mesh = meshing::box_hexes(2);
+    mesh.cells.col(3).head<4>().swap(mesh.cells.col(3).tail<4>());
+    CHECK_THROWS_WITH_AS((Statics{mesh, wall_law}), "solid: cell 3 is inverted as it is given", MeshError);
+  }
+}
