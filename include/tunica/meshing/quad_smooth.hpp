@@ -21,13 +21,14 @@
 namespace tunica::meshing {
 
 struct QuadSmoothOptions {
-  int sweeps = 12;           // of plain smoothing
-  int repairs = 30;          // sweeps over the worst corners at most
-  double good_corner = 0.8;  // corners with a scaled Jacobian above this are left alone
-  double reach = 0.5;        // how far a node may go from its place in the contour [mean edge lengths]: it
-                             // stays on its branch, however small; nodes near a rim are free
-  double good_fit =
-      0.08;  // quadrilaterals nearer to the surface than this are left alone [mean edge lengths]
+  int sweeps = 12;            // of plain smoothing
+  int repairs = 30;           // sweeps over the worst corners at most
+  double good_corner = 0.8;   // corners with a scaled Jacobian above this are left alone
+  double reach = 0.5;         // how far a node may go from its place in the contour [mean edge lengths]: it
+                              // stays on its branch, however small; nodes near a rim are free
+  double good_fit = 0.08;     // faces nearer to the surface than this are left alone [mean edge lengths]
+  double poor_corner = 0.35;  // around corners below this shape goes before place and fit
+  int releases = 5;           // rounds of that, ever wider, at most
 };
 
 namespace detail {
@@ -63,12 +64,13 @@ class QuadSmoother {
   /// One pass over the nodes whose corners or distances are not good; how many of them moved.
   Index repair(const QuadSmoothOptions& options) {
     const auto score = [&](Index n) {
+      if (released_) return std::min(worst_corner(n), options.good_corner);
       const double misfit = std::max(0.0, worst_distance(n) / edge_ - options.good_fit);
       return std::min(worst_corner(n), options.good_corner) - misfit_weight * misfit;
     };
     Index moved = 0;
     for (Index n = 0; n < around_.size(); ++n) {
-      if (fixed(n)) continue;
+      if (fixed(n) || (released_ && free_[static_cast<std::size_t>(n)] == 0)) continue;
       const double before = score(n);
       if (before >= options.good_corner) continue;
       const Vec3 x = wall_.nodes.col(n), normal = normal_[static_cast<std::size_t>(n)];
@@ -99,6 +101,23 @@ class QuadSmoother {
     return worst;
   }
 
+  /// Frees the nodes around corners below `poor`, as many rings as asked for, from their places and from
+  /// fitting the surface, and smooths them; false when no corner is that poor.
+  bool release(double poor, int rings) {
+    free_.assign(fixed_.size(), 0);
+    for (Index n = 0; n < around_.size(); ++n)
+      if (worst_corner(n) < poor) free_[static_cast<std::size_t>(n)] = 1;
+    if (std::find(free_.begin(), free_.end(), 1) == free_.end()) return false;
+    widen(free_, rings);
+    for (std::size_t n = 0; n < free_.size(); ++n)
+      if (free_[n] != 0) reach_[n] = std::numeric_limits<double>::infinity();
+    released_ = true;
+    for (int sweep = 0; sweep < 4 * rings; ++sweep)
+      for (Index n = 0; n < around_.size(); ++n)
+        if (!fixed(n) && free_[static_cast<std::size_t>(n)] != 0) place(n, mean(n));
+    return true;
+  }
+
   /// Largest distance from the surface of the middles of the faces at a node and of their edges.
   [[nodiscard]] double worst_distance(Index node) const {
     double worst = 0;
@@ -115,20 +134,39 @@ class QuadSmoother {
  private:
   [[nodiscard]] bool fixed(Index n) const { return fixed_[static_cast<std::size_t>(n)] != 0; }
 
-  /// Sine of the angle at corner k of q about the surface's normal: 1 square, <= 0 folded.
+  /// Sum of the area vectors of the faces at a node, normalised.
+  [[nodiscard]] Vec3 sheet_normal(Index n) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Index q : around_[n]) {
+      const auto x = [&](int k) { return Vec3(wall_.nodes.col(wall_.cells(k, q))); };
+      sum += (x(2) - x(0)).cross(x(3) - x(1));
+    }
+    return sum.norm() > 0 ? Vec3(sum.normalized()) : sum;
+  }
+
+  /// Sine of the angle at corner k of q about the sheet's normal: 1 square, <= 0 folded.
   [[nodiscard]] double corner(Index q, int k) const {
     const Index n = wall_.cells(k, q);
-    const Vec3 x = wall_.nodes.col(n);
-    const Vec3 u = wall_.nodes.col(wall_.cells((k + 1) % 4, q)) - x,
-               v = wall_.nodes.col(wall_.cells((k + 3) % 4, q)) - x;
+    const auto x = [&](int c) { return Vec3(wall_.nodes.col(wall_.cells(c % 4, q))); };
+    const Vec3 u = x(k + 1) - x(k), v = x(k + 3) - x(k);
     const double size = u.norm() * v.norm();
-    return size > 0 ? u.cross(v).dot(normal_[static_cast<std::size_t>(n)]) / size : 0;
+    return size > 0 ? u.cross(v).dot(sheet_normal(n)) / size : 0;
   }
 
   [[nodiscard]] Vec3 mean(Index n) const {
     Vec3 sum = Vec3::Zero();
     for (const Index m : neighbours_[n]) sum += wall_.nodes.col(m);
     return sum / static_cast<double>(neighbours_[n].size());
+  }
+
+  /// Marks the neighbours of marked nodes, so many times.
+  void widen(std::vector<char>& marked, int rings) const {
+    for (int ring = 0; ring < rings; ++ring) {
+      const auto before = marked;
+      for (Index n = 0; n < neighbours_.size(); ++n)
+        for (const Index m : neighbours_[n])
+          if (before[static_cast<std::size_t>(m)] != 0) marked[static_cast<std::size_t>(n)] = 1;
+    }
   }
 
   void set_reach(double reach) {
@@ -138,13 +176,8 @@ class QuadSmoother {
     edge_ = sum / static_cast<double>(std::max<std::size_t>(1, neighbours_.item.size()));
     reach *= edge_;
     reach_.assign(fixed_.size(), reach);
-    std::vector<char> near(fixed_.begin(), fixed_.end());
-    for (int ring = 0; ring < 3; ++ring) {
-      const auto before = near;
-      for (Index n = 0; n < neighbours_.size(); ++n)
-        for (const Index m : neighbours_[n])
-          if (before[static_cast<std::size_t>(m)] != 0) near[static_cast<std::size_t>(n)] = 1;
-    }
+    std::vector<char> near = fixed_;
+    widen(near, 3);
     for (std::size_t n = 0; n < near.size(); ++n)
       if (near[n] != 0) reach_[n] = std::numeric_limits<double>::infinity();
   }
@@ -185,7 +218,8 @@ class QuadSmoother {
   const FootFinder& lumen_;
   const Rims& rims_;
   mesh::Rows around_, neighbours_;
-  std::vector<char> fixed_;
+  std::vector<char> fixed_, free_;
+  bool released_ = false;
   std::vector<Vec3> normal_;
   Points<3> home_;
   std::vector<double> reach_;
@@ -199,7 +233,7 @@ class QuadSmoother {
 /// Worst corner (sine of its angle about the surface's normal) before and after, and passes made.
 struct [[nodiscard]] QuadSmoothReport {
   double worst_before = 0, worst_after = 0;
-  int repairs = 0;
+  int repairs = 0, releases = 0;
 };
 
 /// Slides the nodes on the surface, the rims on their curves; nodes end on the surface.
@@ -216,6 +250,10 @@ inline QuadSmoothReport smooth_quads(WallQuads& wall, const FootFinder& lumen, c
   for (int i = 0; i < options.sweeps; ++i) smoother.sweep();
   report.worst_before = worst();
   while (report.repairs < options.repairs && smoother.repair(options) > 0) ++report.repairs;
+  for (int round = 1; round <= options.releases && smoother.release(options.poor_corner, round); ++round) {
+    ++report.releases;
+    for (int i = 0; i < options.repairs && smoother.repair(options) > 0; ++i) ++report.repairs;
+  }
   report.worst_after = worst();
   return report;
 }
