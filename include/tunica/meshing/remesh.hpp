@@ -10,6 +10,7 @@
 #include "tunica/meshing/editable_surface.hpp"
 #include "tunica/meshing/restore_volume.hpp"
 #include "tunica/meshing/surface_target.hpp"
+#include "tunica/meshing/wear.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,7 +32,8 @@ struct RemeshReport {
   Index triangles = 0;
   double smallest_angle = 0;  // [degrees]
   double volume_before = 0, volume_after = 0;
-  LeftOut left_out;  // edits that would have folded or crossed the surface
+  LeftOut left_out;         // edits that would have folded or crossed the surface
+  Index kept_features = 0;  // collapses left out because they would have worn down a feature
 };
 
 namespace detail {
@@ -64,6 +66,7 @@ class Remesher {
     mesh::Surface r = edit_.surface(facets_, source_.region_names);
     restore_volume(r, mesh::enclosed_volume(source_), 0.1 * options_.edge);
     report.left_out = edit_.left_out();
+    report.kept_features = kept_features_;
     return r;
   }
 
@@ -113,16 +116,22 @@ class Remesher {
     if (kb == NodeKind::rim && !edit_.on_rim(a, b)) return false;
     Vec3 place = edit_.x(a);
     if (ka == kb) place = on_target(a, 0.5 * (edit_.x(a) + edit_.x(b)));
-    const auto short_from = [&](const Vec3& p) {
+    const auto tried = [&](Index stays, Index goes, const Vec3& p) {
       for (const Index n : {a, b})
         for (const Index m : edit_.neighbours(n))
           if (m != a && m != b && (edit_.x(m) - p).norm() > most) return false;
+      const double lost = wear_.after(edit_, a, b, p);
+      if (lost > most_wear * options_.edge) {
+        ++kept_features_;
+        return false;
+      }
+      if (!edit_.collapse(stays, goes, p)) return false;
+      wear_.set(stays, lost);
       return true;
     };
-    if (short_from(place) && edit_.collapse(a, b, place)) return true;
+    if (tried(a, b, place)) return true;
     if (ka != kb) return false;
-    return (short_from(edit_.x(a)) && edit_.collapse(a, b, edit_.x(a))) ||
-           (short_from(edit_.x(b)) && edit_.collapse(b, a, edit_.x(b)));
+    return tried(a, b, edit_.x(a)) || tried(b, a, edit_.x(b));
   }
 
   void relax(int rounds) {
@@ -257,6 +266,9 @@ class Remesher {
   Facets facets_;
   SurfaceTarget target_;
   EditableSurface edit_;
+  static constexpr double most_wear = 0.3;  // of the edge length: halves the rms distance at a thin stub
+  Wear wear_;
+  Index kept_features_ = 0;
 };
 
 }  // namespace detail
