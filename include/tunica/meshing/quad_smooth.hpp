@@ -144,13 +144,15 @@ class QuadSmoother {
     return sum.norm() > 0 ? Vec3(sum.normalized()) : sum;
   }
 
-  /// Sine of the angle at corner k of q about the sheet's normal: 1 square, <= 0 folded.
+  /// Sine of the angle at corner k of q about the sheet's normal: 1 square, <= 0 folded. Where one side is
+  /// more than twice as long as the other it counts for less.
   [[nodiscard]] double corner(Index q, int k) const {
     const Index n = wall_.cells(k, q);
     const auto x = [&](int c) { return Vec3(wall_.nodes.col(wall_.cells(c % 4, q))); };
     const Vec3 u = x(k + 1) - x(k), v = x(k + 3) - x(k);
-    const double size = u.norm() * v.norm();
-    return size > 0 ? u.cross(v).dot(sheet_normal(n)) / size : 0;
+    const double a = u.norm(), b = v.norm(), size = a * b;
+    const double slender = 2 * std::min(a, b) / std::max(a, b);
+    return size > 0 ? u.cross(v).dot(sheet_normal(n)) / size * std::min(1.0, slender) : 0;
   }
 
   [[nodiscard]] Vec3 mean(Index n) const {
