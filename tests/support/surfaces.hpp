@@ -213,7 +213,7 @@ template <class Place>
 }
 
 /// A number in [-1, 1) that depends on i alone.
-[[nodiscard]] inline double noise(std::uint64_t i) {
+[[nodiscard]] inline double node_noise(std::uint64_t i) {
   i += 0x9e3779b97f4a7c15u;
   i = (i ^ i >> 30) * 0xbf58476d1ce4e5b9u;
   i = (i ^ i >> 27) * 0x94d049bb133111ebu;
@@ -225,7 +225,7 @@ template <class Place>
 [[nodiscard]] inline mesh::Surface noisy_sphere(int times, double amplitude, std::uint64_t seed) {
   mesh::Surface s = icosphere(times);
   for (Index n = 0; n < s.node_count(); ++n)
-    s.nodes.col(n) *= 1 + amplitude * noise(seed * 1000003 + static_cast<std::uint64_t>(n));
+    s.nodes.col(n) *= 1 + amplitude * node_noise(seed * 1000003 + static_cast<std::uint64_t>(n));
   return s;
 }
 

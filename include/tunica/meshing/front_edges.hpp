@@ -6,9 +6,11 @@
 #include "tunica/meshing/cavity_flips.hpp"
 #include "tunica/meshing/front_surface.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
-#include <string>
+#include <iterator>
 #include <vector>
 
 namespace tunica::meshing {
@@ -55,6 +57,28 @@ class FrontEdges {
       }
     }
     throw RecoveryFailure{c_.point(a), "an edge needs too many points"};
+  }
+
+  /// Steiner points that the tetrahedra have made superfluous: where an edge skips one, it is let go.
+  void shorten_chains() {
+    for (auto it = s_.chain.begin(); it != s_.chain.end();) {
+      auto& inner = it->second;
+      const auto& edge = s_.edges[at(it->first)];
+      const auto node = [&](std::size_t i) {
+        return i == 0 ? edge.a : i == inner.size() + 1 ? edge.b : inner[i - 1];
+      };
+      for (std::size_t span = inner.size() + 1; span >= 2; --span)  // the longest skip first
+        for (std::size_t i = 0; i + span <= inner.size() + 1; ++i) {
+          if (c_.tet_with(node(i), node(i + span), star_) < 0) continue;
+          for (std::size_t k = i; k < i + span; ++k) s_.unlock_piece(node(k), node(k + 1));
+          s_.lock_piece(node(i), node(i + span));
+          for (std::size_t k = i + 1; k < i + span; ++k) s_.disown(node(k)), --steiner;
+          inner.erase(inner.begin() + static_cast<std::ptrdiff_t>(i),
+                      inner.begin() + static_cast<std::ptrdiff_t>(i + span - 1));
+          span = std::min(span, inner.size() + 1);
+        }
+      it = inner.empty() ? s_.chain.erase(it) : std::next(it);
+    }
   }
 
  private:
@@ -131,12 +155,32 @@ class FrontEdges {
     const Triple n = c_.face(hit.tet, hit.face_index);
     if (hit.kind == Hit::at_edge) return split_edge(u, b, hit.tet, hit.x, hit.y);
     if (c_.mark(hit.tet, hit.face_index) >= 0) return -1;
-    const double du = std::abs(c_.orient(n[0], n[1], n[2], u)), db = std::abs(c_.orient(n[0], n[1], n[2], b));
-    const Index p = c_.add_point(c_.point(u) + du / (du + db) * (c_.point(b) - c_.point(u)));
-    if (flips_.split_face(hit.tet, hit.face_index, p)) return p;
-    drop_last_point();
-    for (std::size_t k = 0; k < 3; ++k) {  // the meeting point is on an edge to within rounding
-      const Index q = split_edge(u, b, hit.tet, n[k], n[(k + 1) % 3]);
+    // The weights of the meeting point in the face are as the signs of the three sides.
+    Vec3 w;
+    for (std::size_t k = 0; k < 3; ++k)
+      w[static_cast<Eigen::Index>((k + 2) % 3)] = std::abs(c_.orient(u, b, n[k], n[(k + 1) % 3]));
+    w /= w.sum();
+    const Side beyond = c_.across(hit.tet, hit.face_index);
+    const Vec3 far = c_.point(c_.nodes(beyond / 4)[at(beyond % 4)]), near = c_.point(u);
+    for (const double margin : {0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2}) {
+      const Vec3 v = w.cwiseMax(margin) / w.cwiseMax(margin).sum();
+      const Vec3 x = v[0] * c_.point(n[0]) + v[1] * c_.point(n[1]) + v[2] * c_.point(n[2]);
+      for (const double shift : {0.0, margin, -margin}) {  // a flat tetrahedron is left on its open side
+        const Index p = c_.add_point(x + std::abs(shift) * ((shift > 0 ? far : near) - x));
+        if (flips_.split_face(hit.tet, hit.face_index, p)) return p;
+        drop_last_point();
+      }
+      if (margin > 1e-7) continue;
+      if (const Index p = split_near_edge(u, b, hit.tet, n, w); p >= 0) return p;
+    }
+    return -1;
+  }
+
+  /// The meeting point is on an edge of the face to within rounding: that edge is split.
+  Index split_near_edge(Index u, Index b, Index t, const Triple& n, const Vec3& w) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (w[static_cast<Eigen::Index>((k + 2) % 3)] > 1e-7) continue;
+      const Index q = split_edge(u, b, t, n[k], n[(k + 1) % 3]);
       if (q >= 0) return q;
     }
     return -1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Faces of the surface that the tetrahedra lack, once all edges are there: the edges that pierce
-// them are removed by flips, each of which lowers their number, or split where they pierce.
+// them are removed by flips, each of which lowers their number; what is left is filled by a front in
+// the triangle that splits them where they pierce it.
 #pragma once
 
 #include "tunica/meshing/cavity_flips.hpp"
@@ -10,7 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -24,22 +25,19 @@ class FrontFaces {
 
   /// Brings in triangle f and marks its faces. False: it is still missing.
   bool recover(Index f, FrontEdges::Means means) {
-    if (!s_.split(f) && mark_whole(f)) return true;
-    if (means == FrontEdges::Means::flips && s_.split(f)) return false;
-    for (int step = 0; step < most_steps; ++step) {
-      const Piercing e = piercing_edge(f);
-      if (e.tet < 0) {
-        if (mark_pieces(f)) return true;
-        throw RecoveryFailure{c_.point(s_.triangles[at(f)][0]), "the pieces of a face do not fit"};
-      }
-      if (means == FrontEdges::Means::flips) return false;
-      split(f, e);
+    if (!s_.split(f)) {
+      if (mark_whole(f)) return true;
+      while (remove_piercing_edge(f))
+        if (mark_whole(f)) return true;
     }
-    throw RecoveryFailure{c_.point(s_.triangles[at(f)][0]), "a face needs too many points"};
+    if (means == FrontEdges::Means::flips) return false;
+    advance(f);
+    return true;
   }
 
  private:
-  static constexpr int most_steps = 5000;
+  static constexpr int most_steps = 20000;
+  using Directed = std::pair<Index, Index>;
 
   struct Piercing {
     Index tet = -1, u = -1, v = -1;  // u above the triangle, v below
@@ -68,30 +66,23 @@ class FrontFaces {
     return positive == 3 || negative == 3;
   }
 
-  /// An edge that pierces f; those that flips can remove are removed first.
-  Piercing piercing_edge(Index f) {
-    for (;;) {
-      find_piercing(f);
-      if (found_.empty()) return {};
-      bool removed = false;
-      for (const Piercing& e : found_) {
-        if (s_.locked(e.u, e.v)) continue;
-        const auto allowed = [&](Index x, Index y) {
-          const int sx = side(x, f), sy = side(y, f);
-          return sx * sy >= 0 || !(sx > 0 ? pierces(x, y, f) : pierces(y, x, f));
-        };
-        removed = flips_.remove_edge(e.tet, e.u, e.v, 0, allowed);
-        if (removed) break;  // the numbers of tetrahedra have changed
-      }
-      if (!removed) return found_.front();
-    }
+  /// Removes one edge that pierces f without making another, if flips can.
+  bool remove_piercing_edge(Index f) {
+    find_piercing(f);
+    const auto allowed = [&](Index x, Index y) {
+      if (const Index e = s_.edge_between(x, y); e >= 0 && s_.chain.count(e) > 0) return false;
+      const int sx = side(x, f), sy = side(y, f);
+      return sx * sy >= 0 || !(sx > 0 ? pierces(x, y, f) : pierces(y, x, f));
+    };
+    return std::any_of(found_.begin(), found_.end(), [&](const Piercing& e) {
+      return !s_.locked(e.u, e.v) && flips_.remove_edge(e.tet, e.u, e.v, 0, allowed);
+    });
   }
 
-  /// The piercing edges of the tetrahedra at the nodes of f.
+  /// The piercing edges of the tetrahedra at the corners of f.
   void find_piercing(Index f) {
     found_.clear();
-    nodes_of(f);
-    for (const Index n : on_) {
+    for (const Index n : s_.triangles[at(f)]) {
       c_.star(n, star_);
       for (const Index t : star_)
         for (const auto& [i, j] : mesh::Tet4::edges) {
@@ -106,37 +97,12 @@ class FrontFaces {
     }
   }
 
-  /// Corners and Steiner points of f, in a fixed order.
-  void nodes_of(Index f) {
-    on_.assign(s_.triangles[at(f)].begin(), s_.triangles[at(f)].end());
-    for (const Index e : s_.triangle_edges[at(f)])
-      if (const auto it = s_.chain.find(e); it != s_.chain.end())
-        on_.insert(on_.end(), it->second.begin(), it->second.end());
-    if (const auto it = inner_.find(f); it != inner_.end())
-      on_.insert(on_.end(), it->second.begin(), it->second.end());
-  }
-
-  void split(Index f, const Piercing& e) {
-    if (s_.locked(e.u, e.v)) throw RecoveryFailure{c_.point(e.u), "an edge of the surface pierces a face"};
-    const Triple& t = s_.triangles[at(f)];
-    const double du = std::abs(c_.orient(t[0], t[1], t[2], e.u)),
-                 dv = std::abs(c_.orient(t[0], t[1], t[2], e.v));
-    for (const double margin : {0.0, 1e-12, 1e-6, 1e-3, 0.1, 0.5}) {
-      const double s = std::clamp(du / (du + dv), margin, 1 - margin);
-      const Index p = c_.add_point(c_.point(e.u) + s * (c_.point(e.v) - c_.point(e.u)));
-      if (flips_.split_edge(e.tet, e.u, e.v, p)) {
-        s_.own(p, {-1, f});
-        inner_[f].push_back(p);
-        ++steiner;
-        return;
-      }
-      c_.points.pop_back(), c_.tet_of.pop_back();
-    }
-    throw RecoveryFailure{c_.point(e.u), "an edge that pierces a face cannot be split"};
-  }
-
   bool mark_whole(Index f) {
     const Triple& t = s_.triangles[at(f)];
+    return mark(t, f);
+  }
+
+  bool mark(const Triple& t, Index f) {
     c_.star(t[0], star_);
     for (const Index tet : star_) {
       if (!c_.has(tet, t[1]) || !c_.has(tet, t[2])) continue;
@@ -149,53 +115,99 @@ class FrontFaces {
     return false;
   }
 
-  /// All faces between nodes of f, if they are a disc whose rim is the three edges of f.
-  bool mark_pieces(Index f) {
-    nodes_of(f);
-    std::map<Triple, Side> faces;
-    for (const Index n : on_) {
-      c_.star(n, star_);
-      for (const Index t : star_)
-        for (int i = 0; i < 4; ++i) {
-          Triple key = c_.face(t, i);
-          if (!s_.on(key[0], f) || !s_.on(key[1], f) || !s_.on(key[2], f) || on_one_edge(key, f)) continue;
-          std::sort(key.begin(), key.end());
-          faces.emplace(key, 4 * t + i);
-        }
+  /// A front within the triangle: from each of its directed edges (the rest of the triangle on the
+  /// left) the next piece is found among the tetrahedra around that edge, splitting what pierces
+  /// the triangle there. Only signs and neighbours decide, so rounded Steiner points do no harm.
+  void advance(Index f) {
+    const Triple& t = s_.triangles[at(f)];
+    std::set<Directed> front;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index e = s_.triangle_edges[at(f)][i];
+      std::vector<Index> path{t[i]};
+      if (const auto it = s_.chain.find(e); it != s_.chain.end()) {
+        if (s_.edges[at(e)].a == t[i])
+          path.insert(path.end(), it->second.begin(), it->second.end());
+        else
+          path.insert(path.end(), it->second.rbegin(), it->second.rend());
+      }
+      path.push_back(t[(i + 1) % 3]);
+      for (std::size_t k = 0; k + 1 < path.size(); ++k) front.emplace(path[k], path[k + 1]);
     }
-    std::map<std::pair<Index, Index>, int> uses;
-    for (const auto& [key, s] : faces)
-      for (const auto& [i, j] : {std::pair{0, 1}, {1, 2}, {0, 2}}) ++uses[{key[at(i)], key[at(j)]}];
-    std::size_t rim = 0;
-    for (const auto& [e, n] : uses) {
-      if (n > 2) return false;
-      rim += n == 1;
-      if (n == 1 && !s_.locked(e.first, e.second)) return false;
+    pieces_.clear();
+    for (int step = 0; !front.empty(); ++step) {
+      const auto [p, q] = *front.begin();
+      if (step > most_steps) throw RecoveryFailure{c_.point(p), "a face needs too many pieces"};
+      const Index w = next_node(f, p, q);
+      pieces_.push_back({p, q, w});
+      front.erase({p, q});
+      for (const auto& [from, to] : {Directed{q, w}, Directed{w, p}})
+        if (front.erase({from, to}) == 0) front.emplace(to, from);
     }
-    std::size_t expected = 3;
-    for (const Index e : s_.triangle_edges[at(f)])
-      if (const auto it = s_.chain.find(e); it != s_.chain.end()) expected += it->second.size();
-    if (rim != expected) return false;
-    for (const auto& [key, s] : faces) c_.mark_both(s, f);
-    return true;
+    for (const Triple& piece : pieces_)
+      if (!mark(piece, f)) throw RecoveryFailure{c_.point(piece[0]), "a piece of a face is lost"};
   }
 
-  [[nodiscard]] bool on_one_edge(const Triple& n, Index f) const {
-    for (const Index e : s_.triangle_edges[at(f)]) {
-      int count = 0;
-      for (const Index v : n)
-        count += v < s_.nodes ? v == s_.edges[at(e)].a || v == s_.edges[at(e)].b : s_.owner(v).edge == e;
-      if (count == 3) return true;
+  /// The node that completes the piece on the left of (p, q); made if nothing is there yet.
+  Index next_node(Index f, Index p, Index q) {
+    const Index t = c_.tet_with(p, q, star_);
+    if (t < 0) throw RecoveryFailure{c_.point(p), "an edge of a face is lost"};
+    c_.ring(t, p, q, flips_.ring);
+    const auto& link = flips_.ring.link;
+    const std::size_t m = link.size();
+    const Triple& tri = s_.triangles[at(f)];
+    const Vec3 normal = (c_.point(tri[1]) - c_.point(tri[0])).cross(c_.point(tri[2]) - c_.point(tri[0]));
+    const Vec3 left = normal.cross(c_.point(q) - c_.point(p)).normalized();
+    std::vector<int> sign(m);
+    for (std::size_t i = 0; i < m; ++i) sign[i] = side(link[i], f);
+    // Around (p, q) the left half of the plane is met from below to above.
+    double best = 0;
+    std::size_t below = m, zeros = 0;
+    for (std::size_t i = 0; i < m; ++i) {
+      if (sign[i] >= 0) continue;
+      std::size_t gap = 0;
+      while (gap < m && sign[(i + 1 + gap) % m] == 0) ++gap;
+      if (sign[(i + 1 + gap) % m] < 0) continue;
+      const Vec3 x = gap > 0 ? c_.point(link[(i + 1) % m]) : meeting(f, link[i], link[(i + 1) % m], 0);
+      const double reach = left.dot(x - c_.point(p));
+      if (below == m || reach > best) best = reach, below = i, zeros = gap;
     }
-    return false;
+    if (below == m) throw RecoveryFailure{c_.point(p), "a face has no inside at an edge"};
+    if (zeros > 0) {
+      for (std::size_t k = 0; k < zeros; ++k)
+        if (const Index w = link[(below + 1 + k) % m]; s_.on(w, f)) return w;
+      throw RecoveryFailure{c_.point(p), "a node of another part lies on a face"};
+    }
+    return split(f, flips_.ring.tets[below], link[below], link[(below + 1) % m]);
+  }
+
+  /// Where the edge (u, v) meets the plane of f, at least `margin` of it from both ends.
+  [[nodiscard]] Vec3 meeting(Index f, Index u, Index v, double margin) const {
+    const Triple& t = s_.triangles[at(f)];
+    const double du = std::abs(c_.orient(t[0], t[1], t[2], u)), dv = std::abs(c_.orient(t[0], t[1], t[2], v));
+    const double s = std::clamp(du / (du + dv), margin, 1 - margin);
+    return c_.point(u) + s * (c_.point(v) - c_.point(u));
+  }
+
+  Index split(Index f, Index tet, Index u, Index v) {
+    if (s_.locked(u, v)) throw RecoveryFailure{c_.point(u), "an edge of the surface pierces a face"};
+    for (const double margin : {0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1, 0.5}) {
+      const Index p = c_.add_point(meeting(f, u, v, margin));
+      if (flips_.split_edge(tet, u, v, p)) {
+        s_.own(p, {-1, f});
+        ++steiner;
+        return p;
+      }
+      c_.points.pop_back(), c_.tet_of.pop_back();
+    }
+    throw RecoveryFailure{c_.point(u), "an edge that pierces a face cannot be split"};
   }
 
   TetComplex& c_;
   FrontSurface& s_;
   CavityFlips flips_;
-  std::vector<Index> star_, on_;
+  std::vector<Index> star_;
   std::vector<Piercing> found_;
-  std::map<Index, std::vector<Index>> inner_;
+  std::vector<Triple> pieces_;
 };
 
 }  // namespace tunica::meshing

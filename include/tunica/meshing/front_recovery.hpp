@@ -10,9 +10,10 @@
 #include "tunica/meshing/front_inside.hpp"
 #include "tunica/meshing/front_release.hpp"
 #include "tunica/meshing/front_surface.hpp"
-#include "tunica/meshing/triangles_cross.hpp"
+#include "tunica/meshing/intersections.hpp"
 #include "tunica/search/octree.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -28,11 +29,15 @@ struct RecoveryCounts {
 
 class FrontRecovery {
  public:
+  /// In which order the missing parts are brought in: another one is another chance.
+  enum class Order { forward, backward };
+
   /// Fills the complex with the inside of the surface. MeshError names what is wrong with the
   /// surface; RecoveryFailure asks for other inner points.
   static RecoveryCounts run(TetComplex& complex, const FrontSurface& surface, std::span<const Vec3> nodes,
-                            std::span<const Vec3> inner) {
+                            std::span<const Vec3> inner, Order order = Order::forward) {
     FrontRecovery work(complex, surface);
+    work.order_ = order;
     complex.points.assign(nodes.begin(), nodes.end());
     complex.points.insert(complex.points.end(), inner.begin(), inner.end());
     Delaunay::build(complex);
@@ -57,12 +62,15 @@ class FrontRecovery {
     counts_.missing_edges = static_cast<Index>(edges.size());
     counts_.missing_faces = static_cast<Index>(faces.size());
     refuse_crossings(faces);
+    if (order_ == Order::backward)
+      std::reverse(edges.begin(), edges.end()), std::reverse(faces.begin(), faces.end());
     FrontEdges by_edge(c_, s_);
     FrontFaces by_face(c_, s_);
     using Means = FrontEdges::Means;
     for (int round = 0; round < flip_rounds; ++round)
       std::erase_if(edges, [&](Index e) { return by_edge.recover(e, Means::flips); });
     for (const Index e : edges) by_edge.recover(e, Means::points);
+    by_edge.shorten_chains();
     for (int round = 0; round < flip_rounds; ++round)
       std::erase_if(faces, [&](Index f) { return by_face.recover(f, Means::flips); });
     for (const Index f : faces) by_face.recover(f, Means::points);
@@ -102,25 +110,21 @@ class FrontRecovery {
       boxes.push_back(box);
     }
     const search::Octree tree(boxes);
-    const auto corners = [&](Index f) {
-      const Triple& t = s_.triangles[at(f)];
-      return Corners{c_.point(t[0]), c_.point(t[1]), c_.point(t[2])};
-    };
-    for (const Index f : missing) {
-      const Corners own = corners(f);
+    const auto position = [&](Index n) -> const Vec3& { return c_.point(n); };
+    for (const Index f : missing)
       tree.overlapping(boxes[at(f)], [&](Index other) {
-        if (other == f || !triangles_cross(s_.triangles[at(f)], own, s_.triangles[at(other)], corners(other)))
-          return;
+        if (other == f || !cross(s_.triangles[at(f)], s_.triangles[at(other)], position)) return;
+        const Triple& t = s_.triangles[at(f)];
         throw MeshError("the surface crosses itself: triangles " + std::to_string(std::min(f, other)) +
                         " and " + std::to_string(std::max(f, other)) + ", at " +
-                        place_text((own[0] + own[1] + own[2]) / 3));
+                        place_text((c_.point(t[0]) + c_.point(t[1]) + c_.point(t[2])) / 3));
       });
-    }
   }
 
   static constexpr int flip_rounds = 3;
   TetComplex& c_;
   FrontSurface s_;
+  Order order_ = Order::forward;
   RecoveryCounts counts_;
 };
 

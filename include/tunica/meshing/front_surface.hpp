@@ -87,6 +87,8 @@ class FrontSurface {
   }
   void lock_piece(Index a, Index b) { pieces_.insert({std::min(a, b), std::max(a, b)}); }
 
+  void unlock_piece(Index a, Index b) { pieces_.erase({std::min(a, b), std::max(a, b)}); }
+
   void own(Index node, const Owner& owner) { owners_[node] = owner; }
   [[nodiscard]] Owner owner(Index node) const {
     if (node < nodes) return {};

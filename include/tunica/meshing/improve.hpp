@@ -35,7 +35,11 @@ class Improve {
 
  private:
   Improve(TetComplex& complex, std::span<const double> limit, double target)
-      : m_(complex, static_cast<Index>(limit.size())), smooth_(m_), insert_(m_), limit_(limit), target_(target) {}
+      : m_(complex, static_cast<Index>(limit.size())),
+        smooth_(m_),
+        insert_(m_),
+        limit_(limit),
+        target_(target) {}
 
   [[nodiscard]] bool is_bad(Index t) const { return m_.quality(t) < target_; }
 
@@ -71,7 +75,8 @@ class Improve {
     if (list.empty()) return false;
     if (number == first_insertion) most_inserted_ = 100 + static_cast<Index>(list.size() / 2);
     const double worst = m_.quality(list[0]), count = static_cast<double>(list.size());
-    if (number > first_insertion + 1 && count > 0.98 * last_count_ && worst < 1.02 * last_worst_) return false;
+    if (number > first_insertion + 1 && count > 0.98 * last_count_ && worst < 1.02 * last_worst_)
+      return false;
     last_count_ = count, last_worst_ = worst;
     ++counts_.sweeps;
     bool changed = false;

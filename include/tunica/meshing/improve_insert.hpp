@@ -86,7 +86,8 @@ class ImproveInsert {
         double others = 2;
         for (int g = 0; g < 4; ++g) {
           const Side beyond = c.across(s / 4, g);
-          if (g != s % 4 && (beyond < 0 || !c.visited(beyond / 4))) others = std::min(others, value(c.face(s / 4, g)));
+          if (g != s % 4 && (beyond < 0 || !c.visited(beyond / 4)))
+            others = std::min(others, value(c.face(s / 4, g)));
         }
         if (others <= own || cavity_.size() >= most_tets) continue;
         c.visit(s / 4);

@@ -90,12 +90,14 @@ inline void measure_surface(const FrontSurface& s, const std::vector<Vec3>& node
 
 /// For each node of the surface the sine that a tetrahedron with an edge there can be asked for:
 /// that of the smallest angle of the triangles at the node.
-[[nodiscard]] inline std::vector<double> surface_limits(const FrontSurface& s, const std::vector<Vec3>& nodes) {
+[[nodiscard]] inline std::vector<double> surface_limits(const FrontSurface& s,
+                                                        const std::vector<Vec3>& nodes) {
   std::vector<double> limit(nodes.size(), 1.0);
   for (const Triple& t : s.triangles) {
     const auto p = [&](std::size_t i) { return nodes[static_cast<std::size_t>(t[i])]; };
     const double sine = std::sin(mesh::Triangle{p(0), p(1), p(2)}.smallest_angle());
-    for (const Index n : t) limit[static_cast<std::size_t>(n)] = std::min(limit[static_cast<std::size_t>(n)], sine);
+    for (const Index n : t)
+      limit[static_cast<std::size_t>(n)] = std::min(limit[static_cast<std::size_t>(n)], sine);
   }
   return limit;
 }
@@ -203,7 +205,9 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
     if (attempt + 1 < attempts) inner = Lattice(distances, size, lattice).points();
     TetComplex complex;
     try {
-      const RecoveryCounts counts = FrontRecovery::run(complex, front, nodes, inner);
+      const RecoveryCounts counts = FrontRecovery::run(
+          complex, front, nodes, inner,
+          attempt % 2 == 0 ? FrontRecovery::Order::forward : FrontRecovery::Order::backward);
       result.report.missing_edges = counts.missing_edges;
       result.report.missing_faces = counts.missing_faces;
       result.report.steiner = counts.steiner;
