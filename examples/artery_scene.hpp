@@ -19,6 +19,11 @@ inline constexpr double kappa = 348_MPa;                // bulk modulus: 1000 ti
 inline constexpr double thickness = 1.5_mm;
 inline constexpr double reference_pressure = 80_mmHg;  // p0: the imaged shape is free of stress at it
 
+/// Moens and Korteweg's speed of pressure waves, sqrt(E h / (2 rho R)) with E = 6 c10, R [m] the radius.
+[[nodiscard]] inline double wave_speed(double radius) {
+  return std::sqrt(6 * c10 * thickness / (2 * blood_density * radius));
+}
+
 /// Every load starts from rest: (1 - cos(pi t / 20 ms)) / 2 until 20 ms, then 1.
 [[nodiscard]] inline double ramp(double t) {
   return t < 20_ms ? 0.5 * (1 - std::cos(std::numbers::pi * t / 20_ms)) : 1.0;

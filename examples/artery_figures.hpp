@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// The figures of a coupled run: they go into its checkpoints, so that a restarted run reports the same.
+#pragma once
+
+#include "json.hpp"
+#include "tunica/core/types.hpp"
+#include "tunica/mesh/quality.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace tunica::artery {
+
+struct Figures {
+  int steps = 0, iterations = 0, most_iterations = 0, halvings = 0;
+  double displacement = 0, von_mises = 0, speed = 0;  // peaks [m], [Pa], [m/s]
+  double dihedral = 180, scaled_jacobian = 1;         // worst of all frames [degrees], [-]
+  double mass_residual = 0;                           // largest of all steps [-]
+  double defect = 0, settled_defect = 0,
+         last_defect = 0;     // mass_defect: of all steps, from the end of the ramp, of the last
+  double largest_inflow = 0;  // [m3/s]
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("steps", steps), a("iterations", iterations), a("most_iterations", most_iterations),
+        a("halvings", halvings);
+    a("displacement", displacement), a("von_mises", von_mises), a("speed", speed);
+    a("dihedral", dihedral), a("scaled_jacobian", scaled_jacobian), a("mass_residual", mass_residual);
+    a("defect", defect), a("settled_defect", settled_defect), a("last_defect", last_defect);
+    a("largest_inflow", largest_inflow);
+  }
+
+  template <class StepReport>
+  void count(const StepReport& step) {
+    ++steps;
+    iterations += step.iterations;
+    most_iterations = std::max(most_iterations, step.iterations);
+    halvings += step.halvings;
+  }
+
+  template <class Fluid, class Wall>
+  void watch(const Fluid& blood, const Wall& wall, double ramp_end) {
+    displacement = std::max(displacement, wall.nodal_displacement().colwise().norm().maxCoeff());
+    von_mises = std::max(von_mises, wall.cell_von_mises().maxCoeff());
+    speed = std::max(speed, blood.velocity().colwise().norm().maxCoeff());
+    const auto& mass = blood.mass_balance();
+    mass_residual = std::max(mass_residual, mass.residual());
+    last_defect = mass.defect();
+    defect = std::max(defect, last_defect);
+    if (blood.time() > ramp_end) settled_defect = std::max(settled_defect, last_defect);
+    largest_inflow = std::max(largest_inflow, mass.inflow);
+  }
+
+  void watch(const mesh::TetMesh& lumen, const mesh::HexMesh& wall) {
+    dihedral = std::min(dihedral, mesh::quality(lumen).dihedral.least);
+    scaled_jacobian = std::min(scaled_jacobian, mesh::quality(wall).scaled_jacobian.least);
+  }
+
+  void report(examples::Json& j) const {
+    j["steps"] = steps, j["step_halvings"] = halvings;
+    j["iterations_total"] = iterations, j["iterations_most"] = most_iterations;
+    j["iterations_mean"] = static_cast<double>(iterations) / std::max(1, steps);
+    j["peak_displacement_m"] = displacement, j["peak_von_mises_Pa"] = von_mises,
+    j["peak_velocity_m_s"] = speed;
+    j["worst_dihedral_degrees"] = dihedral, j["worst_scaled_jacobian"] = scaled_jacobian;
+    j["largest_inflow_m3_s"] = largest_inflow;
+    j["mass_residual"] = mass_residual;
+    j["mass_defect"] = settled_defect, j["mass_defect_last"] = last_defect,
+    j["mass_defect_with_start"] = defect;
+  }
+};
+
+/// One row of the closing table.
+inline void row(const char* name, const char* format, auto... values) {
+  std::printf("  %-22s ", name);
+  std::printf(format, values...);
+  std::printf("\n");
+}
+
+}  // namespace tunica::artery
