@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The output files of one run: all of them, or none when it fails.
+// The output files of one run: all of them, or none when it fails; what they are called.
 #pragma once
+
+#include "cli.hpp"
+#include "image_pipeline.hpp"
+#include "json.hpp"
+#include "tunica/io/atomic_file.hpp"
 
 #include <filesystem>
 #include <string>
@@ -31,5 +36,27 @@ class OutputFiles {
  private:
   std::vector<std::filesystem::path> made_;
 };
+
+/// OUT.vtu: the one given, or the input's name with .vtu in the present folder.
+[[nodiscard]] inline std::filesystem::path mesh_file(const std::string& given,
+                                                     const std::filesystem::path& input) {
+  if (given.empty()) return input.filename().replace_extension(".vtu");
+  if (std::filesystem::path(given).extension() != ".vtu")
+    throw UsageError("-o: \"" + given + "\" does not end in .vtu");
+  return given;
+}
+
+/// OUT.surface.vtp of OUT.vtu.
+[[nodiscard]] inline std::filesystem::path surface_file(std::filesystem::path volume) {
+  return volume.replace_extension(".surface.vtp");
+}
+
+/// Ends a run: the report last, then all files stay.
+inline void finish(OutputFiles& files, Stages& stage, Json& report, const std::string& report_file) {
+  stage.finish(report);
+  if (!report_file.empty())
+    files.write(report_file, [&](const auto& path) { io::write_file(path, report.text() + "\n"); });
+  files.keep();
+}
 
 }  // namespace tunica::examples

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+// From an image to a closed, capped, remeshed surface and its tetrahedra: segmentation, contour,
+// smoothing, cuts and caps, remeshing, filling. Lengths are in the unit of the image. [PEREZ08, 3]
+#pragma once
+
+#include "cli.hpp"
+#include "json.hpp"
+#include "progress.hpp"
+#include "tunica/image/components.hpp"
+#include "tunica/image/phantom.hpp"
+#include "tunica/image/sampling.hpp"
+#include "tunica/io/vtk_image.hpp"
+#include "tunica/mesh/quality.hpp"
+#include "tunica/mesh/topology.hpp"
+#include "tunica/meshing/cut.hpp"
+#include "tunica/meshing/dual_contouring.hpp"
+#include "tunica/meshing/handles.hpp"
+#include "tunica/meshing/hermite_field.hpp"
+#include "tunica/meshing/marching_cubes.hpp"
+#include "tunica/meshing/remesh.hpp"
+#include "tunica/meshing/smooth.hpp"
+#include "tunica/meshing/split_quads.hpp"
+#include "tunica/meshing/tetrahedra.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tunica::examples {
+
+enum class Contourer { marching_cubes, dual_contouring };
+enum class Fill { tets, none };
+
+struct ImageOptions {
+  std::string image{};                 // a VTK file; empty: the phantom, with its iso-value and ports
+  std::optional<double> iso{};         // inside is value >= iso
+  std::optional<image::Voxel> seed{};  // none: the largest component
+  std::vector<meshing::Cut> cuts{};    // in order; unnamed ones become "cut 1", "cut 2" ...
+  Contourer surface = Contourer::marching_cubes;
+  Fill fill = Fill::tets;
+  std::optional<double> edge{};  // 0 keeps the contourer's triangles; none: 1.5 largest spacing
+  int smooth = 20;               // sweeps
+};
+
+/// What the image became, in its unit.
+struct [[nodiscard]] ImageMeshes {
+  mesh::Surface surface;  // closed; regions: wall, the cuts in their order, the borders of the image
+  mesh::TetMesh tets;     // its nodes begin with those of the surface; empty with Fill::none
+};
+
+/// Time and progress of the stages of a program.
+class Stages {
+ public:
+  explicit Stages(int count) : progress_(count) {}
+
+  template <class F>
+  decltype(auto) operator()(const std::string& name, F&& call) {
+    progress_.tell(done_++, name);
+    return watch_.time(name, std::forward<F>(call));
+  }
+  void finish(Json& report) {
+    progress_.tell(done_, "done");
+    for (const auto& [name, seconds] : watch_.stages()) report["seconds"][name] = seconds;
+  }
+  [[nodiscard]] Stopwatch& watch() { return watch_; }
+
+ private:
+  Progress progress_;
+  Stopwatch watch_;
+  int done_ = 0;
+};
+
+/// Tells a warning on stderr and in the report.
+inline void warn(Json& report, const std::string& sentence) {
+  warn(sentence);
+  report["warnings"].push(sentence);
+}
+
+[[nodiscard]] inline meshing::Cut cut_of(const std::string& text) {
+  const auto v = numbers_of<double>(text);
+  if (v.size() != 6 && v.size() != 7)
+    throw UsageError("a cut is px,py,pz,nx,ny,nz or with a radius at the end");
+  meshing::Cut cut{.point = {v[0], v[1], v[2]}, .normal = {v[3], v[4], v[5]}, .name = ""};
+  if (!(cut.normal.norm() > 0) || !cut.point.allFinite() || !cut.normal.allFinite())
+    throw UsageError("the normal of a cut must have a length");
+  if (v.size() == 7) cut.radius = v[6];
+  if (!(cut.radius > 0)) throw UsageError("the radius of a cut must be positive");
+  return cut;
+}
+
+inline void add_image_options(Cli& cli, ImageOptions& o) {
+  cli.option("--iso", "V", "iso-value: inside is value >= V", o.iso);
+  cli.option("--seed", "i,j,k", "a voxel of the vessel (none: the largest component)",
+             [&o](const std::string& text) {
+               const auto v = numbers_of<Index>(text);
+               if (v.size() != 3) throw UsageError("a seed is i,j,k");
+               o.seed = image::Voxel{v[0], v[1], v[2]};
+             });
+  cli.repeated("--cut", "px,py,pz,nx,ny,nz[,r]",
+               "a plane, outward normal, or with r a disc that severs only the vessel it crosses",
+               [&o](const std::string& text) { o.cuts.push_back(cut_of(text)); });
+  cli.choice<Contourer>(
+      "--surface", "how the surface is contoured",
+      {{"marching-cubes", Contourer::marching_cubes}, {"dual-contouring", Contourer::dual_contouring}},
+      o.surface);
+  cli.choice<Fill>("--fill", "what fills it", {{"tets", Fill::tets}, {"none", Fill::none}}, o.fill);
+  cli.option("--edge", "L", "edge length (none: 1.5 times the largest spacing; 0: the contourer's triangles)",
+             [&o](const std::string& text) {
+               o.edge = number_of<double>(text);
+               if (!(*o.edge >= 0 && std::isfinite(*o.edge))) throw UsageError("must be 0 or more");
+             });
+  cli.option("--smooth", "N", "sweeps of smoothing that keeps the volume (20)",
+             [&o](const std::string& text) {
+               o.smooth = number_of<int>(text);
+               if (o.smooth < 0) throw UsageError("must be 0 or more");
+             });
+}
+
+/// Figures of a surface: size, topology with the place of each handle, quality, patches.
+[[nodiscard]] inline Json surface_figures(const mesh::Surface& s, const mesh::Topology& t) {
+  Json j;
+  j["nodes"] = s.node_count(), j["triangles"] = s.cell_count();
+  j["volume"] = mesh::enclosed_volume(s), j["area"] = mesh::area(s);
+  j["components"] = t.components.size(), j["genus"] = t.genus();
+  j["closed"] = t.closed();
+  const auto q = mesh::quality(s);
+  j["smallest_angle_degrees"] = q.angle.least, j["mean_ratio"] = q.mean_ratio.mean;
+  j["shortest_edge"] = q.shortest_edge, j["longest_edge"] = q.longest_edge;
+  for (std::size_t r = 0; r < s.region_names.size(); ++r) {
+    Json patch;
+    patch["patch"] = r, patch["name"] = s.region_names[r];
+    patch["area"] = mesh::area_of_region(s, static_cast<Index>(r));
+    j["patches"].push(std::move(patch));
+  }
+  return j;
+}
+
+/// "221.484, 150.293, 22.501".
+[[nodiscard]] inline std::string place_text(const Vec3& x) {
+  std::array<char, 100> text{};
+  std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g", x[0], x[1], x[2]);
+  return text.data();
+}
+
+/// Warns of handles and of cavities, with their places.
+inline void tell_topology(const mesh::Surface& s, const mesh::Topology& t, Json& report) {
+  report["handles"] = Json(std::vector<double>{});
+  if (t.genus() > 0)
+    for (const auto& h : meshing::handles(s, t)) {
+      warn(report, "the surface has a handle at (" + place_text(h.place) + "), its ring is " +
+                       image::number_text(h.length) + " long");
+      Json j;
+      j["place"] = h.place, j["length"] = h.length;
+      report["handles"].push(std::move(j));
+    }
+  for (const auto& c : t.components)
+    if (c.volume < 0)
+      warn(report, "there is a cavity of volume " + image::number_text(-c.volume) + " at (" +
+                       place_text(c.centre) + ")");
+}
+
+[[nodiscard]] inline Json fill_figures(const meshing::FillReport& r, const mesh::TetMesh& tets) {
+  const auto q = mesh::quality(tets);
+  Json j;
+  j["nodes"] = r.nodes, j["tetrahedra"] = r.tetrahedra, j["inverted"] = q.inverted;
+  j["volume"] = r.volume, j["volume_error"] = r.volume_error;
+  j["smallest_dihedral_degrees"] = r.min_dihedral, j["largest_dihedral_degrees"] = r.max_dihedral;
+  j["one_percent_dihedral_degrees"] = q.dihedral.quantile(0.01);
+  j["mean_ratio"] = r.mean_ratio, j["worst_place"] = q.worst_place;
+  j["surface_smallest_angle_degrees"] = r.surface_min_angle;
+  j["surface_smallest_dihedral_degrees"] = r.surface_min_dihedral;
+  return j;
+}
+
+[[nodiscard]] inline Json remesh_figures(const meshing::RemeshReport& r) {
+  Json j;
+  j["triangles"] = r.triangles, j["smallest_angle_degrees"] = r.smallest_angle;
+  j["volume_before"] = r.volume_before, j["volume_after"] = r.volume_after;
+  j["left_out_folds"] = r.left_out.folds, j["left_out_crossings"] = r.left_out.crosses;
+  j["kept_features"] = r.kept_features;
+  return j;
+}
+
+namespace detail {
+
+[[nodiscard]] inline image::Image<float> load(ImageOptions& o, Json& report) {
+  Json& j = report["image"];
+  image::Image<float> image;
+  if (o.image.empty()) {
+    image = image::sample<float>(image::Phantom{}, {});
+    if (!o.iso) o.iso = image::Phantom::surface;
+    if (o.cuts.empty())
+      for (const auto& port : image::Phantom::ports())
+        o.cuts.push_back({.point = port.point, .normal = port.normal, .name = port.name});
+    j["name"] = "phantom";
+  } else {
+    if (!o.iso) throw UsageError("--iso is needed with an image");
+    image = io::read_vtk_image(o.image).image;
+    j["name"] = o.image;
+  }
+  const auto range = image::data_range(image);
+  for (int a = 0; a < 3; ++a) j["size"].push(image.size(a));
+  j["lowest"] = range.lowest, j["highest"] = range.highest;
+  return image;
+}
+
+[[nodiscard]] inline double largest_spacing(const image::Image<float>& image) {
+  double h = 0;
+  for (const auto& axis : image.axes)
+    for (std::size_t i = 1; i < axis.size(); ++i) h = std::max(h, axis[i] - axis[i - 1]);
+  return h;
+}
+
+[[nodiscard]] inline mesh::Surface contour(const image::Image<float>& image, const image::Region& region,
+                                           const ImageOptions& o, Json& report) {
+  if (o.surface == Contourer::dual_contouring)
+    return meshing::split_quads(
+        meshing::dual_contour(meshing::hermite_of_image(image, region.mask.inside, *o.iso)));
+  auto contour = meshing::marching_cubes(image, region.mask.inside, *o.iso);
+  report["borders"] = Json(std::vector<double>{});
+  for (const auto& b : contour.borders) {
+    Json j;
+    j["name"] = b.name, j["area"] = b.area, j["centre"] = b.centre;
+    report["borders"].push(std::move(j));
+  }
+  return std::move(contour.surface);
+}
+
+}  // namespace detail
+
+/// The whole path; figures go to the report, warnings to it and to stderr. InputError or MeshError
+/// name what cannot be used. Seven stages.
+inline constexpr int image_stages = 7;
+[[nodiscard]] inline ImageMeshes mesh_image(ImageOptions o, Stages& stage, Json& report) {
+  ImageMeshes out;
+  mesh::Surface& s = out.surface;
+  report["warnings"] = Json(std::vector<std::string>{});
+  const auto image = stage("read", [&] { return detail::load(o, report); });
+
+  const auto region =
+      stage("segment", [&] { return image::segment(image, {.iso = *o.iso, .seed = o.seed}); });
+  Json& segment = report["segmentation"];
+  segment["iso"] = *o.iso, segment["voxels"] = region.voxels;
+  segment["touches"] = Json(std::vector<std::string>{});
+  for (std::size_t f = 0; f < 6; ++f)
+    if (region.touches[f]) segment["touches"].push(image::face_names[f]);
+
+  s = stage("contour", [&] { return detail::contour(image, region, o, report["contour"]); });
+  const auto contoured = mesh::topology(s);
+  const Json borders = report["contour"]["borders"];
+  report["contour"] = surface_figures(s, contoured);
+  report["contour"]["borders"] = borders;
+  tell_topology(s, contoured, report);
+
+  stage("smooth", [&] {
+    if (o.smooth == 0) return;
+    const auto r = meshing::smooth(s, {.sweeps = o.smooth});
+    Json& j = report["smooth"];
+    j["sweeps"] = o.smooth, j["volume_before"] = r.volume_before, j["volume_after"] = r.volume_after;
+    j["held_back"] = r.held_back, j["frozen"] = r.frozen, j["largest_move"] = r.largest_move;
+  });
+
+  stage("cut", [&] {
+    meshing::CutOptions how;
+    if (o.seed) how.seed = image.position(*o.seed);
+    auto cut = meshing::cut(std::move(s), o.cuts, how);
+    s = std::move(cut.surface);
+    for (const auto& c : cut.cuts) {
+      Json j;
+      j["name"] = c.name, j["patch"] = c.region, j["area"] = c.area, j["centre"] = c.centre;
+      j["rim_edges"] = c.rim_edges;
+      report["cuts"].push(std::move(j));
+    }
+    report["cut_volume"] = mesh::enclosed_volume(s);
+  });
+
+  stage("remesh", [&] {
+    const double edge = o.edge.value_or(1.5 * detail::largest_spacing(image));
+    report["edge"] = edge;
+    if (!(edge > 0)) return;
+    auto remeshed = meshing::remesh(s, {.edge = edge});
+    s = std::move(remeshed.surface);
+    report["remesh"] = remesh_figures(remeshed.report);
+  });
+  const auto made = mesh::topology(s);
+  report["surface"] = surface_figures(s, made);
+  if (made.components.size() > contoured.components.size())
+    for (const auto& c : made.components)
+      warn(report, "the cuts leave " + std::to_string(made.components.size()) + " parts; one of volume " +
+                       image::number_text(c.volume) + " is at (" + place_text(c.centre) + ")");
+  for (std::size_t r = 0; r < s.region_names.size(); ++r)
+    if (s.region_names[r].rfind(meshing::border_prefix, 0) == 0)
+      warn(report, "the vessel leaves the image: patch " + std::to_string(r) + " is its flat end at " +
+                       s.region_names[r]);
+
+  stage("fill", [&] {
+    if (o.fill == Fill::none) return;
+    auto filled = meshing::tetrahedra(s);
+    out.tets = std::move(filled.mesh);
+    report["fill"] = fill_figures(filled.report, out.tets);
+  });
+  return out;
+}
+
+}  // namespace tunica::examples
