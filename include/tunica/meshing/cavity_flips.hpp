@@ -73,14 +73,14 @@ class CavityFlips {
   }
 
   /// Puts node p into the edge (a, b) of t: every tetrahedron of the ring is halved.
-  bool split_edge(Index t, Index a, Index b, Index p) {
+  bool split_edge(Index t, Index a, Index b, Index p, double floor = 0) {
     c.ring(t, a, b, ring);
     fresh.clear();
     for (const Index r : ring.tets)
       for (const Index end : {a, b}) {
         Quad q = c.nodes(r);
         q[at(c.local(r, end))] = p;
-        if (!(c.orient(q) > 0)) return false;
+        if (!(quality(q) > floor)) return false;
         fresh.push_back(q);
       }
     c.replace(ring.tets, fresh, open);
@@ -88,7 +88,7 @@ class CavityFlips {
   }
 
   /// Puts node p into the face f of t: three tetrahedra on either side.
-  bool split_face(Index t, int f, Index p) {
+  bool split_face(Index t, int f, Index p, double floor = 0) {
     const Side s = c.across(t, f);
     if (s < 0 || c.mark(t, f) >= 0) return false;
     fresh.clear();
@@ -97,7 +97,7 @@ class CavityFlips {
         if (i == side % 4) continue;
         Quad q = c.nodes(side / 4);
         q[at(i)] = p;
-        if (!(c.orient(q) > 0)) return false;
+        if (!(quality(q) > floor)) return false;
         fresh.push_back(q);
       }
     const std::array<Index, 2> old{t, s / 4};

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/meshing/cavity_flips.hpp"
+#include "tunica/meshing/cavity_insert.hpp"
 #include "tunica/meshing/front_surface.hpp"
 
 #include <algorithm>
@@ -23,7 +24,8 @@ struct RecoveryFailure {
 
 class FrontEdges {
  public:
-  FrontEdges(TetComplex& complex, FrontSurface& surface) : c_(complex), s_(surface), flips_(complex) {}
+  FrontEdges(TetComplex& complex, FrontSurface& surface)
+      : c_(complex), s_(surface), flips_(complex), insert_(complex, surface) {}
 
   Index steiner = 0;  // points put on edges
 
@@ -36,25 +38,33 @@ class FrontEdges {
       if (turn == 0 ? flip_along(a, b) : flip_along(b, a)) return true;
     if (means == Means::flips) return false;
     Index u = a;
+    std::vector<Index> goals{b};  // nodes of the chain ahead, the nearest last
     for (int step = 0; step < longest_chain; ++step) {
-      const Hit hit = first_hit(u, b);
-      if (hit.kind == Hit::at_node && hit.node == b) {
-        if (u != a) s_.lock_piece(u, b);
-        return true;
+      const Index goal = goals.back();
+      if (flip_along(u, goal)) {
+        if (u != a || goal != b) s_.lock_piece(u, goal);
+        if (goal == b) return true;
+        s_.chain[edge].push_back(goal);
+        goals.pop_back();
+        u = goal;
+        continue;
       }
+      const Hit hit = first_hit(u, goal);
       if (hit.kind == Hit::at_node || hit.kind == Hit::nothing)
         throw RecoveryFailure{c_.point(u), "an edge runs into a node"};
-      const Index p = split(u, b, hit);
+      Index p = split_well(u, goal, hit);
+      const bool inserted = p < 0 && (p = insert_between(u, goal, hit)) >= 0;
+      if (p < 0) p = split(u, goal, hit);
       if (p < 0) throw RecoveryFailure{c_.point(u), "an edge cannot be split off"};
-      s_.chain[edge].push_back(p);
-      s_.own(p, {edge, -1});
-      s_.lock_piece(u, p);
-      ++steiner;
-      u = p;
-      if (flip_along(u, b)) {
-        s_.lock_piece(u, b);
-        return true;
+      if (!inserted) {
+        s_.chain[edge].push_back(p);
+        s_.lock_piece(u, p);
+        u = p;
+      } else {
+        goals.push_back(p);
       }
+      s_.own(p, {edge, -1});
+      ++steiner;
     }
     throw RecoveryFailure{c_.point(a), "an edge needs too many points"};
   }
@@ -83,6 +93,7 @@ class FrontEdges {
 
  private:
   static constexpr int longest_chain = 1000, most_flips = 60;
+  static constexpr double flat = 1e-6;  // sine of a dihedral angle that rounding may turn over
 
   struct Hit {
     enum Kind { nothing, at_node, at_edge, at_face } kind = nothing;
@@ -150,6 +161,17 @@ class FrontEdges {
     return flips_.remove_edge(t, x, y, 0, [](Index, Index) { return true; });
   }
 
+  /// The point where the segment meets a face, if no nearly flat tetrahedra come of it.
+  Index split_well(Index u, Index b, const Hit& hit) {
+    if (hit.kind != Hit::at_face || c_.mark(hit.tet, hit.face_index) >= 0) return -1;
+    const Triple n = c_.face(hit.tet, hit.face_index);
+    const double du = std::abs(c_.orient(n[0], n[1], n[2], u)), db = std::abs(c_.orient(n[0], n[1], n[2], b));
+    const Index p = c_.add_point(c_.point(u) + du / (du + db) * (c_.point(b) - c_.point(u)));
+    if (flips_.split_face(hit.tet, hit.face_index, p, flat)) return p;
+    drop_last_point();
+    return -1;
+  }
+
   /// A new point where the segment meets a face or an edge, -1: a part of the surface is there.
   Index split(Index u, Index b, const Hit& hit) {
     const Triple n = c_.face(hit.tet, hit.face_index);
@@ -202,11 +224,24 @@ class FrontEdges {
     return -1;
   }
 
+  /// A point of the segment well inside a cavity, where flat tetrahedra leave no room for a split.
+  Index insert_between(Index u, Index goal, const Hit& hit) {
+    for (const double floor : {1e-3, 1e-6, 1e-10})
+      for (const double at_segment : {0.5, 0.3, 0.7, 0.1, 0.9, 0.02, 0.98}) {
+        const Vec3 x = c_.point(u) + at_segment * (c_.point(goal) - c_.point(u));
+        const std::array<Index, 1> seed{c_.containing(x, hit.tet)};
+        if (seed[0] < 0) continue;
+        if (const Index p = insert_.insert(x, seed, floor); p >= 0) return p;
+      }
+    return -1;
+  }
+
   void drop_last_point() { c_.points.pop_back(), c_.tet_of.pop_back(); }
 
   TetComplex& c_;
   FrontSurface& s_;
   CavityFlips flips_;
+  CavityInsert insert_;
   std::vector<Index> star_;
 };
 

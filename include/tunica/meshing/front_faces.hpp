@@ -5,6 +5,7 @@
 #pragma once
 
 #include "tunica/meshing/cavity_flips.hpp"
+#include "tunica/meshing/cavity_insert.hpp"
 #include "tunica/meshing/front_edges.hpp"
 #include "tunica/meshing/front_surface.hpp"
 
@@ -19,7 +20,8 @@ namespace tunica::meshing {
 
 class FrontFaces {
  public:
-  FrontFaces(TetComplex& complex, FrontSurface& surface) : c_(complex), s_(surface), flips_(complex) {}
+  FrontFaces(TetComplex& complex, FrontSurface& surface)
+      : c_(complex), s_(surface), flips_(complex), insert_(complex, surface) {}
 
   Index steiner = 0;  // points put on faces
 
@@ -37,6 +39,7 @@ class FrontFaces {
 
  private:
   static constexpr int most_steps = 20000;
+  static constexpr double flat = 1e-6;  // sine of a dihedral angle that rounding may turn over
   using Directed = std::pair<Index, Index>;
 
   struct Piercing {
@@ -133,18 +136,16 @@ class FrontFaces {
       path.push_back(t[(i + 1) % 3]);
       for (std::size_t k = 0; k + 1 < path.size(); ++k) front.emplace(path[k], path[k + 1]);
     }
-    pieces_.clear();
     for (int step = 0; !front.empty(); ++step) {
       const auto [p, q] = *front.begin();
       if (step > most_steps) throw RecoveryFailure{c_.point(p), "a face needs too many pieces"};
       const Index w = next_node(f, p, q);
-      pieces_.push_back({p, q, w});
+      if (!mark({p, q, w}, f)) throw RecoveryFailure{c_.point(p), "a piece of a face is lost"};
+      s_.lock_piece(q, w), s_.lock_piece(w, p);  // no later split or cavity may take them
       front.erase({p, q});
       for (const auto& [from, to] : {Directed{q, w}, Directed{w, p}})
         if (front.erase({from, to}) == 0) front.emplace(to, from);
     }
-    for (const Triple& piece : pieces_)
-      if (!mark(piece, f)) throw RecoveryFailure{c_.point(piece[0]), "a piece of a face is lost"};
   }
 
   /// The node that completes the piece on the left of (p, q); made if nothing is there yet.
@@ -190,24 +191,32 @@ class FrontFaces {
 
   Index split(Index f, Index tet, Index u, Index v) {
     if (s_.locked(u, v)) throw RecoveryFailure{c_.point(u), "an edge of the surface pierces a face"};
-    for (const double margin : {0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1, 0.5}) {
+    const auto made = [&](Index p) {
+      s_.own(p, {-1, f});
+      ++steiner;
+      return p;
+    };
+    const auto try_split = [&](double margin, double floor) {
       const Index p = c_.add_point(meeting(f, u, v, margin));
-      if (flips_.split_edge(tet, u, v, p)) {
-        s_.own(p, {-1, f});
-        ++steiner;
-        return p;
-      }
+      if (flips_.split_edge(tet, u, v, p, floor)) return p;
       c_.points.pop_back(), c_.tet_of.pop_back();
-    }
+      return Index{-1};
+    };
+    if (const Index p = try_split(0, flat); p >= 0) return made(p);
+    const std::vector<Index> seed = flips_.ring.tets;
+    for (const double floor : {1e-3, 1e-6, 1e-10})
+      if (const Index p = insert_.insert(meeting(f, u, v, 0), seed, floor); p >= 0) return made(p);
+    for (const double margin : {0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1, 0.5})
+      if (const Index p = try_split(margin, 0); p >= 0) return made(p);
     throw RecoveryFailure{c_.point(u), "an edge that pierces a face cannot be split"};
   }
 
   TetComplex& c_;
   FrontSurface& s_;
   CavityFlips flips_;
+  CavityInsert insert_;
   std::vector<Index> star_;
   std::vector<Piercing> found_;
-  std::vector<Triple> pieces_;
 };
 
 }  // namespace tunica::meshing

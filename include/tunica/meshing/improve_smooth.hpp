@@ -89,7 +89,7 @@ class ImproveSmooth {
     double value = before;
     Vec3 x = c.point(node);
     if (const double q = place_.worst(c, middle, value); q > value) value = q, x = middle;
-    x = place_.climb(c, x, value, 0.2 * length, rounds);
+    x = place_.climb(c, x, value, 0.2 * length, value < poor ? many_rounds : rounds);
     if (!(value > before * (1 + 1e-3) + 1e-9)) return false;
     c.points[static_cast<std::size_t>(node)] = x;
     for (const Index t : star_) m_.update(t);
@@ -97,7 +97,9 @@ class ImproveSmooth {
   }
 
  private:
-  static constexpr int rounds = 12;
+  // Nearly flat tetrahedra leave room for steps at their own height alone.
+  static constexpr int rounds = 12, many_rounds = 60;
+  static constexpr double poor = 1e-3;
   ImproveMesh& m_;
   std::vector<Index> star_;
   ImprovePlace place_;
