@@ -89,6 +89,10 @@ struct Options {
   }
 };
 
+[[nodiscard]] std::string rounded(double x) {
+  return image::number_text(std::round(x * 100) / 100);
+}
+
 /// The two meshes of the run in SI; patch 0 of the lumen is the wall, 1 the inlet, the others outlets.
 struct Meshes {
   mesh::TetMesh lumen;
@@ -103,9 +107,9 @@ Meshes make_meshes(const Options& o, Stages& stage, Json& report) {
   });
   const auto& extrusion = wall.report.extrusion;
   if (extrusion.thinned > 0)
-    warn(report["image_to_mesh"],
-         "the wall gives way at " + std::to_string(extrusion.thinned) + " nodes, down to " +
-             image::number_text(std::round(100 * extrusion.least_share)) + " % of its thickness");
+    warn(report["image_to_mesh"], "the wall gives way at " + std::to_string(extrusion.thinned) +
+                                      " nodes, down to " + rounded(100 * extrusion.least_share) +
+                                      " % of its thickness");
   Json& j = report["wall"];
   j["hexahedra"] = wall.wall.cell_count(), j["nodes"] = wall.wall.node_count();
   j["smallest_scaled_jacobian"] = extrusion.quality.scaled_jacobian.least;
@@ -168,8 +172,15 @@ void run(Options& o) {
   wall.interface(mesh.wall.patch("inner"));
 
   const motion::Laplace laplace{mesh.lumen};
+  // Where the lumen has a stub too thin for the wall's hexahedra its nodes move with the nearest of them.
   const coupling::Octree transfer(mesh.lumen.nodes, mesh.lumen.patch("wall"), mesh.wall.nodes,
-                                  mesh.wall.patch("inner"));
+                                  mesh.wall.patch("inner"), {.largest_gap = 2});
+  if (transfer.gap() > 0.5 * o.wall_edge() * o.unit) {
+    const Vec3 at = transfer.farthest() / o.unit;
+    warn(report["image_to_mesh"], "the wall does not follow the lumen at (" + rounded(at[0]) + ", " +
+                                      rounded(at[1]) + ", " + rounded(at[2]) +
+                                      "): " + rounded(transfer.gap() / o.unit) + " apart");
+  }
   auto fsi = coupling::staggered(Timed{blood, watch, "flow"}, Timed{wall, watch, "wall dynamics"},
                                  TimedMotion{laplace, watch, "mesh motion"}, transfer, coupling::IqnIls{});
   watch.add("set up", std::chrono::duration<double>(Stopwatch::Clock::now() - set_up).count());

@@ -59,7 +59,7 @@ class Octree {
         throw MeshError("transfer: the fluid's wall node at " + std::to_string(x[0]) + " " +
                         std::to_string(x[1]) + " " + std::to_string(x[2]) + " lies " + std::to_string(gap) +
                         " away from the structure");
-      gap_ = std::max(gap_, gap);
+      if (gap > gap_) gap_ = gap, farthest_ = x;
       weights_.col(column) = point.weights;
       for (int c = 0; c < Face::nodes; ++c) {
         const auto at = std::lower_bound(from.begin(), from.end(), structure_wall.faces(c, near.item));
@@ -87,12 +87,15 @@ class Octree {
   /// The largest distance of a fluid node from the structure's surface [m]: what moments may err by,
   /// times the force.
   [[nodiscard]] double gap() const { return gap_; }
+  /// The fluid node there [m].
+  [[nodiscard]] const Vec3& farthest() const { return farthest_; }
 
  private:
   Index structure_count_ = 0;
   Connectivity<Face::nodes> slots_;                             // rows of the structure's displacement
   Eigen::Matrix<double, Face::nodes, Eigen::Dynamic> weights_;  // shape functions
   double gap_ = 0;                                              // [m]
+  Vec3 farthest_ = Vec3::Zero();                                // [m]
 };
 
 }  // namespace tunica::coupling
