@@ -31,7 +31,7 @@ struct Springs {
     r -= b;
     return {.admissible = admissible, .scale = 1, .merit = r.norm()};
   }
-  void direction(const Eigen::VectorXd&, const Eigen::VectorXd&) const {}
+  void direction(const Eigen::VectorXd&) const {}
   void tangent(const Eigen::VectorXd& x, la::SparseMatrix& A) const {
     for (Eigen::Index k = 0; k < x.size(); ++k) {
       if (kind == Kind::cubic) A.coeffRef(k, k) = 1 + 3 * x[k] * x[k];

@@ -121,17 +121,18 @@ TEST_SUITE("unit") {
     for (int n = 1; n <= 3; ++n) {
       for (auto* wall : {&full, &modified}) {
         wall->save();
-        for (const double factor : {1.1, 1.01, 1.0}) {
+        for (const double factor : {1.1, 1.001, 1.0}) {
           wall->restore();
           wall->load(f * n * factor);
           REQUIRE(wall->step(1e-3));
           (wall == &full ? made_by_full : made) += wall->last().factorisations;
+          if (wall == &modified && factor == 1.0) CHECK(wall->last().factorisations == 0);
         }
       }
     }
     CHECK((full.displacement() - modified.displacement()).norm() < 1e-8 * full.displacement().norm());
     MESSAGE("factorisations " << made << " against " << made_by_full);
-    CHECK(3 * made <= made_by_full);
+    CHECK(made < made_by_full);
   }
 
   TEST_CASE("solid: lumped and consistent masses weigh the same") {

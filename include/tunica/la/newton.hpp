@@ -27,13 +27,14 @@ struct ResidualInfo {
 
 /// r(x) = 0 with r = 0 kept for prescribed unknowns; `tangent` fills A = dr/dx at x, the rows and
 /// columns of prescribed unknowns being those of a diagonal matrix; `pattern` is a matrix of A's
-/// pattern. `direction` announces the step dx that leaves x, and `residual` is told how far along
+/// pattern. `direction` announces the step dx that leaves the x
+/// of the last residual, and `residual` is told how far along
 /// it x is (or no_step), so that a problem with condensed unknowns can carry them along.
 template <class P>
 concept NonlinearProblem = requires(P problem, const Eigen::VectorXd& x, Eigen::VectorXd& r,
                                     SparseMatrix& A) {
   { problem.residual(x, r, 1.0) } -> std::same_as<ResidualInfo>;
-  problem.direction(x, x);
+  problem.direction(x);
   problem.tangent(x, A);
   { problem.pattern() } -> std::convertible_to<SparseMatrix>;
 };
@@ -106,7 +107,7 @@ class Newton {
       if (const auto linear = solver_.solve(-r_, dx_); linear.status == Status::diverged)
         return ended(Status::diverged, relative);
       ++k;
-      problem.direction(x, dx_);
+      problem.direction(dx_);
       const double old_merit = info.merit;
       double s = 1;
       bool refused = false;  // by the line search, on account of an old tangent

@@ -86,6 +86,9 @@ class Body {
       const auto element = Element::forces(material_, reference(e), gather(e, u));
       CellState& cell = cells_[static_cast<std::size_t>(e)];
       cell.smallest_J = element.smallest_J;
+      cell.volume_slope = element.volume_slope;
+      cell.bulk_per_volume = element.bulk / element.volume;
+      cell.p = element.p;
       // theta is known to a few roundings only, and the pressure to kappa times as much.
       cell.rounding =
           roundings * std::numeric_limits<double>::epsilon() * element.bulk * element.volume_slope.norm();
@@ -104,14 +107,13 @@ class Body {
   }
   /// Size of the part of the last internal forces that is rounding: no residual gets below it [N].
   [[nodiscard]] double rounding() const { return rounding_; }
-  /// A step du leaves u: the pressures go from the ones predicted so far to U'(theta) + U'' dv.du/V.
-  void direction(const Eigen::VectorXd& u, const Eigen::VectorXd& du) {
+  /// A step du leaves the u of the last internal_forces(): the pressures go from the ones predicted so
+  /// far to U'(theta) + U'' dv.du/V.
+  void direction(const Eigen::VectorXd& du) {
     assembly_.for_each_cell([&](Index e) {
-      const auto element = Element::forces(material_, reference(e), gather(e, u));
       CellState& cell = cells_[static_cast<std::size_t>(e)];
       cell.start = cell.predicted;
-      cell.target =
-          element.p + element.bulk / element.volume * element.volume_slope.dot(gather(e, du).reshaped());
+      cell.target = cell.p + cell.bulk_per_volume * cell.volume_slope.dot(gather(e, du).reshaped());
     });
   }
   /// The first cell with J <= 0 in the last internal_forces(), -1 if there was none.
@@ -204,6 +206,8 @@ class Body {
   static constexpr double roundings = 2;  // measured: residuals stall at 0.2 to 0.6 of this bound
   struct CellState {
     double smallest_J = 1, rounding = 0;
+    double p = 0, bulk_per_volume = 0;  // U'(theta) and U''/V at the last forces
+    Eigen::Matrix<double, 3 * C::nodes, 1> volume_slope = Eigen::Matrix<double, 3 * C::nodes, 1>::Zero();
     double start = 0, target = 0, predicted = 0;  // pressures along a step of Newton [Pa]
   };
   using NodePairs = Eigen::Matrix<double, C::nodes, C::nodes>;

@@ -220,9 +220,7 @@ class Dynamics {
               .rounding = d.body_.rounding(),
               .merit = d.predicted_.norm()};
     }
-    void direction(const Eigen::VectorXd& u, const Eigen::VectorXd& du) {
-      d.body_.direction(between(d.state_.u, u), d.scheme_.af * du);
-    }
+    void direction(const Eigen::VectorXd& du) { d.body_.direction(d.scheme_.af * du); }
     void tangent(const Eigen::VectorXd& u, la::SparseMatrix& A) {
       d.body_.tangent(between(d.state_.u, u), between(d.state_.p, d.pressure_),
                       {.stiffness = d.scheme_.af,

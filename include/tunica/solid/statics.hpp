@@ -140,7 +140,7 @@ class Statics {
               .rounding = s.body_.rounding(),
               .merit = s.predicted_.norm()};
     }
-    void direction(const Eigen::VectorXd& u, const Eigen::VectorXd& du) { statics.body_.direction(u, du); }
+    void direction(const Eigen::VectorXd& du) { statics.body_.direction(du); }
     void tangent(const Eigen::VectorXd& u, la::SparseMatrix& A) {
       statics.body_.tangent(u, pressures(), {.symmetric_load = Solver::symmetric}, A);
     }
