@@ -8,6 +8,7 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/meshing/extrude_field.hpp"
+#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -44,8 +45,10 @@ inline void add_extruded_patches(mesh::HexMesh& mesh, const mesh::QuadSurface& s
   const Index nodes = sheet.node_count(), quads = sheet.cell_count();
   Connectivity<4> inner(4, quads), outer(4, quads);
   for (Index q = 0; q < quads; ++q) {
-    inner.col(q) = sheet.cells.col(q).reverse();
-    outer.col(q) = sheet.cells.col(q).array() + nodes * layers;
+    for (int k = 0; k < 4; ++k) {
+      inner(3 - k, q) = sheet.cells(k, q);
+      outer(k, q) = sheet.cells(k, q) + nodes * layers;
+    }
   }
   mesh.patches.push_back({"inner", inner});
   mesh.patches.push_back({"outer", outer});
@@ -84,21 +87,20 @@ inline void add_extruded_patches(mesh::HexMesh& mesh, const mesh::QuadSurface& s
   mesh.nodes.resize(3, nodes * (layers + 1));
   for (Index l = 0; l <= layers; ++l)
     for (Index n = 0; n < nodes; ++n)
-      mesh.nodes.col(l * nodes + n) =
-          sheet.nodes.col(n) + (static_cast<double>(l) / layers) * field.offset(n);
+      vec::set_column(mesh.nodes, l * nodes + n,
+                      vec::column(sheet.nodes, n) + (static_cast<double>(l) / layers) * field.offset(n));
   mesh.cells.resize(8, quads * layers);
   for (Index l = 0; l < layers; ++l)
     for (Index q = 0; q < quads; ++q)
-      mesh.cells.col(l * quads + q) << sheet.cells.col(q).array() + l * nodes,
-          sheet.cells.col(q).array() + (l + 1) * nodes;
+      for (int k = 0; k < 8; ++k) mesh.cells(k, l * quads + q) = sheet.cells(k % 4, q) + (l + k / 4) * nodes;
   detail::add_extruded_patches(mesh, sheet, rims, options.layers);
 
   ExtrudeReport& report = result.report;
   for (Index n = 0; n < nodes; ++n) {
     const double share = field.share(n);
     result.share.push_back(share);
-    if (share < report.least_share) report.least_share = share, report.thinnest = sheet.nodes.col(n);
-    if (share < 0.99) ++report.thinned, report.thinned_centre += sheet.nodes.col(n);
+    if (share < report.least_share) report.least_share = share, report.thinnest = vec::column(sheet.nodes, n);
+    if (share < 0.99) ++report.thinned, report.thinned_centre += vec::column(sheet.nodes, n);
   }
   if (report.thinned > 0) report.thinned_centre /= report.thinned;
   Index faces = 0;

@@ -11,8 +11,7 @@
 #include "tunica/meshing/quad_adjacency.hpp"
 #include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/surface_foot.hpp"
-
-#include <Eigen/Geometry>
+#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <array>
@@ -58,8 +57,8 @@ class ExtrudeField {
     for (const SheetRim& rim : rims)
       for (const Index n : rim.loop) plane_[at(n)] = rim.normal;
     for (Index q = 0; q < sheet.cell_count(); ++q) {
-      const Vec3 n = (x(q, 2) - x(q, 0)).cross(x(q, 3) - x(q, 1));
-      face_normal_.push_back(n.norm() > 0 ? Vec3(n.normalized()) : Vec3::Zero());
+      const Vec3 n = vec::cross(x(q, 2) - x(q, 0), x(q, 3) - x(q, 1));
+      face_normal_.push_back(vec::unit(n));
     }
   }
 
@@ -88,7 +87,7 @@ class ExtrudeField {
     for (int k = 0; k < 4; ++k) {
       const Index n = sheet_.cells(k, q);
       if (share(n) < 1) return std::nullopt;
-      sum += offset(n).dot(face_normal_[at(q)]) / 4;
+      sum += vec::dot(offset(n), face_normal_[at(q)]) / 4;
     }
     return sum / options_.thickness - 1;
   }
@@ -96,10 +95,11 @@ class ExtrudeField {
  private:
   [[nodiscard]] static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(sheet_.node_count()); }
-  [[nodiscard]] Vec3 x(Index q, int k) const { return sheet_.nodes.col(sheet_.cells(k, q)); }
+  [[nodiscard]] Vec3 x(Index q, int k) const { return node(sheet_.cells(k, q)); }
+  [[nodiscard]] Vec3 node(Index n) const { return vec::column(sheet_.nodes, n); }
 
   [[noreturn]] void fail(Index n) const {
-    const Vec3 p = sheet_.nodes.col(n);
+    const Vec3 p = node(n);
     throw MeshError("no direction sees all faces around the node at " + std::to_string(p[0]) + " " +
                     std::to_string(p[1]) + " " + std::to_string(p[2]) + ": the sheet is folded there");
   }
@@ -112,8 +112,8 @@ class ExtrudeField {
       normals.push_back(face_normal_[at(q)]);
       for (int k = 0; k < 4; ++k) {
         if (sheet_.cells(k, q) != n) continue;
-        const Vec3 c = (x(q, (k + 1) % 4) - x(q, k)).cross(x(q, (k + 3) % 4) - x(q, k));
-        normals.push_back(c.norm() > 0 ? Vec3(c.normalized()) : Vec3::Zero());
+        const Vec3 c = vec::cross(x(q, (k + 1) % 4) - x(q, k), x(q, (k + 3) % 4) - x(q, k));
+        normals.push_back(vec::unit(c));
       }
     }
     return normals;
@@ -121,9 +121,9 @@ class ExtrudeField {
 
   [[nodiscard]] Vec3 in_plane(Index n, const Vec3& direction) const {
     const Vec3& p = plane_[at(n)];
-    const Vec3 d = direction - p * p.dot(direction);
-    if (!(d.norm() > 0.1)) fail(n);
-    return d.normalized();
+    const Vec3 d = direction - p * vec::dot(p, direction);
+    if (!(vec::length(d) > 0.1)) fail(n);
+    return vec::unit(d);
   }
 
   /// min over s of sum w (s m.n - t)^2 over the faces at the node, w the angle of the face there.
@@ -133,7 +133,7 @@ class ExtrudeField {
       for (int k = 0; k < 4; ++k) {
         if (sheet_.cells(k, q) != n) continue;
         const double w = corner_angle(x(q, k), x(q, (k + 1) % 4), x(q, (k + 3) % 4));
-        const double c = direction_[at(n)].dot(face_normal_[at(q)]);
+        const double c = vec::dot(direction_[at(n)], face_normal_[at(q)]);
         sum += w * c, square += w * c * c;
       }
     return square > 0 ? options_.thickness * sum / square : options_.thickness;
@@ -147,7 +147,7 @@ class ExtrudeField {
         double sum = 0;
         for (int k = 0; k < 4; ++k) {
           const Index n = sheet_.cells(k, q);
-          sum += length_[at(n)] * direction_[at(n)].dot(face_normal_[at(q)]) / 4;
+          sum += length_[at(n)] * vec::dot(direction_[at(n)], face_normal_[at(q)]) / 4;
         }
         residual[at(q)] = options_.thickness - sum;
       }
@@ -170,7 +170,7 @@ class ExtrudeField {
       const double cosine = sees(n, direction_[at(n)]);
       const auto free = [&](double share) {
         const double reach = share * length_[at(n)];
-        const Vec3 end = sheet_.nodes.col(n) + reach * direction_[at(n)];
+        const Vec3 end = node(n) + reach * direction_[at(n)];
         return finder.nearest(end).distance >= 0.97 * reach * cosine;
       };
       if (free(1)) continue;
@@ -185,7 +185,7 @@ class ExtrudeField {
   /// Least cosine between a direction at a node and the normals there: positive where it sees all faces.
   [[nodiscard]] double sees(Index n, const Vec3& direction) const {
     double cosine = 1;
-    for (const Vec3& m : normals_at(n)) cosine = std::min(cosine, m.dot(direction));
+    for (const Vec3& m : normals_at(n)) cosine = std::min(cosine, vec::dot(m, direction));
     return cosine;
   }
 
@@ -223,7 +223,7 @@ class ExtrudeField {
       changed = false;
       for (Index n = 0; n < sheet_.node_count(); ++n)
         for (const Index m : neighbours_[n]) {
-          const double way = (sheet_.nodes.col(n) - sheet_.nodes.col(m)).norm();
+          const double way = vec::distance(node(n), node(m));
           const double most = share_[at(m)] + 0.5 * way / options_.thickness;
           if (share_[at(n)] > most + 1e-12) share_[at(n)] = most, changed = true;
         }
@@ -237,8 +237,8 @@ class ExtrudeField {
       mesh::HexCorners c;
       for (std::size_t k = 0; k < 4; ++k) {
         const Index n = sheet_.cells(static_cast<Eigen::Index>(k), q);
-        c[k] = sheet_.nodes.col(n) + offset(n) * (static_cast<double>(l) / options_.layers);
-        c[k + 4] = sheet_.nodes.col(n) + offset(n) * (static_cast<double>(l + 1) / options_.layers);
+        c[k] = node(n) + offset(n) * (static_cast<double>(l) / options_.layers);
+        c[k + 4] = node(n) + offset(n) * (static_cast<double>(l + 1) / options_.layers);
       }
       worst = std::min(worst, mesh::scaled_jacobian(c));
     }
@@ -250,7 +250,8 @@ class ExtrudeField {
     double worst = 1;
     for (int k = 0; k < 4; ++k) {
       const Vec3 u = x(q, (k + 1) % 4) - x(q, k), v = x(q, (k + 3) % 4) - x(q, k);
-      worst = std::min(worst, u.cross(v).dot(direction_[at(sheet_.cells(k, q))]) / (u.norm() * v.norm()));
+      worst = std::min(worst, vec::dot(vec::cross(u, v), direction_[at(sheet_.cells(k, q))]) /
+                                  (vec::length(u) * vec::length(v)));
     }
     return worst;
   }

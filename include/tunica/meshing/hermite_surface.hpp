@@ -7,6 +7,7 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/cap_planes.hpp"
 #include "tunica/meshing/hermite.hpp"
+#include "tunica/meshing/vec.hpp"
 #include "tunica/meshing/vertex_normals.hpp"
 
 #include <algorithm>
@@ -61,7 +62,7 @@ struct LineHit {
     std::array<Vec3, 3> x;
     Box box;
     for (int k = 0; k < 3; ++k)
-      box.extend(x[static_cast<std::size_t>(k)] = surface.nodes.col(surface.cells(k, t)));
+      box.extend(x[static_cast<std::size_t>(k)] = vec::column(surface.nodes, surface.cells(k, t)));
     for (std::size_t v = first(grid.axes[c], box.lo[ec]); v < grid.size(c) && grid.axes[c][v] <= box.hi[ec];
          ++v)
       for (std::size_t u = first(grid.axes[b], box.lo[eb]); u < grid.size(b) && grid.axes[b][u] <= box.hi[eb];
@@ -134,7 +135,7 @@ struct LineHit {
   TUNICA_EXPECT(options.spacing > 0, "a grid has a positive spacing");
   if (surface.cell_count() == 0) throw MeshError("an empty surface has no contour");
   Box box;
-  for (Index n = 0; n < surface.node_count(); ++n) box.extend(Vec3(surface.nodes.col(n)));
+  for (Index n = 0; n < surface.node_count(); ++n) box.extend(vec::column(surface.nodes, n));
   const auto flat = cap_planes(surface);
   const auto normals = region_vertex_normals(surface);
   for (int attempt = 0; attempt < options.attempts; ++attempt) {
@@ -165,15 +166,15 @@ struct LineHit {
       Crossing x{Vec3::Zero(), Vec3::Zero(), region};
       for (int k = 0; k < 3; ++k) {
         const Index n = surface.cells(k, hit->triangle);
-        x.point += hit->weights[k] * surface.nodes.col(n);
+        x.point += hit->weights[k] * vec::column(surface.nodes, n);
         x.normal += hit->weights[k] * normals.of(region, n);
       }
       const auto along = static_cast<Eigen::Index>(edge % 3);
       const std::size_t low = edge / 3;
       for (Eigen::Index e = 0; e < 3; ++e) x.point[e] = e == along ? hit->at : grid.point(low)[e];
       if (flat[static_cast<std::size_t>(region)]) x.normal = flat[static_cast<std::size_t>(region)]->normal;
-      x.normal = x.normal.norm() > 0 ? Vec3(x.normal.normalized())
-                                     : Vec3(Vec3::Unit(along) * (grid.inside[low] != 0 ? 1.0 : -1.0));
+      x.normal = vec::length(x.normal) > 0 ? vec::unit(x.normal)
+                                           : Vec3(Vec3::Unit(along) * (grid.inside[low] != 0 ? 1.0 : -1.0));
       grid.edges.push_back(edge);
       grid.crossings.push_back(x);
     }

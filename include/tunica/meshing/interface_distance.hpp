@@ -5,6 +5,7 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/surface_foot.hpp"
+#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,21 +33,23 @@ struct InterfaceDistance {
   fine.cells.resize(4, quads.cells.cols() * parts * parts);
   Index node = 0, cell = 0;
   for (Index q = 0; q < quads.cell_count(); ++q) {
-    const auto x = [&](int k) { return Vec3(quads.nodes.col(quads.cells(k, q))); };
+    const auto x = [&](int k) { return vec::column(quads.nodes, quads.cells(k, q)); };
     const Index first = node;
     for (int j = 0; j <= parts; ++j)
       for (int i = 0; i <= parts; ++i) {
         const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
         const Vec3 p = (1 - v) * ((1 - u) * x(0) + u * x(1)) + v * ((1 - u) * x(3) + u * x(2));
-        fine.nodes.col(node++) = p;
-        const double away = finder.nearest(p).distance;
+        vec::set_column(fine.nodes, node++, p);
+        const double away = finder.distance(p);
         d.quads_rms += away * away;
         if (away > d.quads_max) d.quads_max = away, d.quads_place = p;
       }
     for (int j = 0; j < parts; ++j)
       for (int i = 0; i < parts; ++i) {
         const Index a = first + i + (parts + 1) * j;
-        fine.cells.col(cell++) << a, a + 1, a + parts + 2, a + parts + 1;
+        fine.cells(0, cell) = a, fine.cells(1, cell) = a + 1;
+        fine.cells(2, cell) = a + parts + 2, fine.cells(3, cell) = a + parts + 1;
+        ++cell;
       }
   }
   d.quads_rms = node > 0 ? std::sqrt(d.quads_rms / node) : 0;
@@ -61,9 +64,9 @@ struct InterfaceDistance {
   for (Index n = 0; n < lumen.node_count(); ++n) {
     if (wall[static_cast<std::size_t>(n)] == 0) continue;
     ++count;
-    const double away = back.nearest(lumen.nodes.col(n)).distance;
+    const double away = back.distance(vec::column(lumen.nodes, n));
     d.wall_rms += away * away;
-    if (away > d.wall_max) d.wall_max = away, d.wall_place = lumen.nodes.col(n);
+    if (away > d.wall_max) d.wall_max = away, d.wall_place = vec::column(lumen.nodes, n);
   }
   d.wall_rms = count > 0 ? std::sqrt(d.wall_rms / count) : 0;
   return d;

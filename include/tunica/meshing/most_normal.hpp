@@ -4,8 +4,7 @@
 #pragma once
 
 #include "tunica/core/types.hpp"
-
-#include <Eigen/Geometry>
+#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -24,10 +23,10 @@ struct MostNormal {
 [[nodiscard]] inline MostNormal most_normal(std::span<const Vec3> normals) {
   MostNormal best;
   const auto try_axis = [&](const Vec3& axis) {
-    const double size = axis.norm();
+    const double size = vec::length(axis);
     if (!(size > 1e-12)) return;
     double cosine = std::numeric_limits<double>::infinity();
-    for (const Vec3& n : normals) cosine = std::min(cosine, n.dot(axis) / size);
+    for (const Vec3& n : normals) cosine = std::min(cosine, vec::dot(n, axis) / size);
     if (cosine > best.cosine) best = {axis / size, cosine};
   };
   for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -36,8 +35,8 @@ struct MostNormal {
       try_axis(normals[i] + normals[j]);
       for (std::size_t k = j + 1; k < normals.size(); ++k) {
         const Vec3 &a = normals[i], &b = normals[j], &c = normals[k];
-        const Vec3 axis = (b - a).cross(c - a);  // equally far from all three
-        try_axis(axis.dot(a) < 0 ? Vec3(-axis) : axis);
+        const Vec3 axis = vec::cross(b - a, c - a);  // equally far from all three
+        try_axis(vec::dot(axis, a) < 0 ? Vec3(-axis) : axis);
       }
     }
   }

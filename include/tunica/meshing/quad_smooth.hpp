@@ -7,9 +7,8 @@
 #include "tunica/meshing/quad_adjacency.hpp"
 #include "tunica/meshing/rim_curve.hpp"
 #include "tunica/meshing/surface_foot.hpp"
+#include "tunica/meshing/vec.hpp"
 #include "tunica/meshing/wall_quads.hpp"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -46,9 +45,9 @@ class QuadSmoother {
     for (const auto& loop : wall.loops)
       for (const Index n : loop) fixed_[static_cast<std::size_t>(n)] = 1;
     for (Index n = 0; n < around_.size(); ++n) {
-      const Foot foot = lumen_.nearest(wall_.nodes.col(n));
+      const Foot foot = lumen_.nearest(at(n));
       normal_[static_cast<std::size_t>(n)] = foot.normal;
-      if (!fixed(n)) wall_.nodes.col(n) = foot.point;
+      if (!fixed(n)) vec::set_column(wall_.nodes, n, foot.point);
     }
     home_ = wall.nodes;
     set_reach(reach);
@@ -73,11 +72,12 @@ class QuadSmoother {
       if (fixed(n) || (released_ && free_[static_cast<std::size_t>(n)] == 0)) continue;
       const double before = score(n);
       if (before >= options.good_corner) continue;
-      const Vec3 x = wall_.nodes.col(n), normal = normal_[static_cast<std::size_t>(n)];
+      const Vec3 x = at(n), normal = normal_[static_cast<std::size_t>(n)];
       const Vec3 to_mean = mean(n) - x;
       double reach = std::numeric_limits<double>::infinity();
-      for (const Index m : neighbours_[n]) reach = std::min(reach, (wall_.nodes.col(m) - x).norm());
-      const Vec3 u = normal.unitOrthogonal() * reach, v = normal.cross(u);
+      for (const Index m : neighbours_[n]) reach = std::min(reach, vec::distance(at(m), x));
+      const Vec3 aside = std::abs(normal[0]) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+      const Vec3 u = vec::unit(vec::cross(normal, aside)) * reach, v = vec::cross(normal, u);
       const std::array<Vec3, 11> tries{to_mean,  0.5 * to_mean, 0.25 * to_mean, 0.2 * u,  -0.2 * u, 0.2 * v,
                                        -0.2 * v, 0.05 * u,      -0.05 * u,      0.05 * v, -0.05 * v};
       double best = before;
@@ -86,9 +86,9 @@ class QuadSmoother {
         place(n, x + step);
         const double quality = score(n);
         if (quality > best + 1e-3)
-          best = quality, best_x = wall_.nodes.col(n), best_n = normal_[static_cast<std::size_t>(n)];
+          best = quality, best_x = at(n), best_n = normal_[static_cast<std::size_t>(n)];
       }
-      wall_.nodes.col(n) = best_x, normal_[static_cast<std::size_t>(n)] = best_n;
+      vec::set_column(wall_.nodes, n, best_x), normal_[static_cast<std::size_t>(n)] = best_n;
       moved += best > before ? 1 : 0;
     }
     return moved;
@@ -123,7 +123,7 @@ class QuadSmoother {
     double worst = 0;
     const auto probe = [&](const Vec3& x) { worst = std::max(worst, lumen_.distance(x)); };
     for (const Index q : around_[node]) {
-      const auto x = [&](int k) { return Vec3(wall_.nodes.col(wall_.cells(k % 4, q))); };
+      const auto x = [&](int k) { return at(wall_.cells(k % 4, q)); };
       probe(0.25 * (x(0) + x(1) + x(2) + x(3)));
       for (int k = 0; k < 4; ++k)
         if (wall_.cells(k, q) == node) probe(0.5 * (x(k) + x(k + 1)));
@@ -132,32 +132,33 @@ class QuadSmoother {
   }
 
  private:
+  [[nodiscard]] Vec3 at(Index n) const { return vec::column(wall_.nodes, n); }
   [[nodiscard]] bool fixed(Index n) const { return fixed_[static_cast<std::size_t>(n)] != 0; }
 
   /// Sum of the area vectors of the faces at a node, normalised.
   [[nodiscard]] Vec3 sheet_normal(Index n) const {
     Vec3 sum = Vec3::Zero();
     for (const Index q : around_[n]) {
-      const auto x = [&](int k) { return Vec3(wall_.nodes.col(wall_.cells(k, q))); };
-      sum += (x(2) - x(0)).cross(x(3) - x(1));
+      const auto x = [&](int k) { return at(wall_.cells(k, q)); };
+      sum += vec::cross(x(2) - x(0), x(3) - x(1));
     }
-    return sum.norm() > 0 ? Vec3(sum.normalized()) : sum;
+    return vec::unit(sum);
   }
 
   /// Sine of the angle at corner k of q about the sheet's normal: 1 square, <= 0 folded. Where one side is
   /// more than twice as long as the other it counts for less.
   [[nodiscard]] double corner(Index q, int k) const {
     const Index n = wall_.cells(k, q);
-    const auto x = [&](int c) { return Vec3(wall_.nodes.col(wall_.cells(c % 4, q))); };
+    const auto x = [&](int c) { return at(wall_.cells(c % 4, q)); };
     const Vec3 u = x(k + 1) - x(k), v = x(k + 3) - x(k);
-    const double a = u.norm(), b = v.norm(), size = a * b;
+    const double a = vec::length(u), b = vec::length(v), size = a * b;
     const double slender = 2 * std::min(a, b) / std::max(a, b);
-    return size > 0 ? u.cross(v).dot(sheet_normal(n)) / size * std::min(1.0, slender) : 0;
+    return size > 0 ? vec::dot(vec::cross(u, v), sheet_normal(n)) / size * std::min(1.0, slender) : 0;
   }
 
   [[nodiscard]] Vec3 mean(Index n) const {
     Vec3 sum = Vec3::Zero();
-    for (const Index m : neighbours_[n]) sum += wall_.nodes.col(m);
+    for (const Index m : neighbours_[n]) sum += at(m);
     return sum / static_cast<double>(neighbours_[n].size());
   }
 
@@ -174,7 +175,7 @@ class QuadSmoother {
   void set_reach(double reach) {
     double sum = 0;
     for (Index n = 0; n < neighbours_.size(); ++n)
-      for (const Index m : neighbours_[n]) sum += (home_.col(n) - home_.col(m)).norm();
+      for (const Index m : neighbours_[n]) sum += vec::distance(vec::column(home_, n), vec::column(home_, m));
     edge_ = sum / static_cast<double>(std::max<std::size_t>(1, neighbours_.item.size()));
     reach *= edge_;
     reach_.assign(fixed_.size(), reach);
@@ -185,11 +186,11 @@ class QuadSmoother {
   }
 
   void place(Index n, Vec3 x) {
-    const Vec3 home = home_.col(n), way = x - home;
-    const double reach = reach_[static_cast<std::size_t>(n)], far = way.norm();
+    const Vec3 home = vec::column(home_, n), way = x - home;
+    const double reach = reach_[static_cast<std::size_t>(n)], far = vec::length(way);
     if (far > reach) x = home + way * (reach / far);
     const Foot foot = lumen_.nearest_facing(x, normal_[static_cast<std::size_t>(n)]);
-    wall_.nodes.col(n) = foot.point;
+    vec::set_column(wall_.nodes, n, foot.point);
     normal_[static_cast<std::size_t>(n)] = foot.normal;
   }
 
@@ -206,12 +207,12 @@ class QuadSmoother {
         int inner = 0;
         Vec3 below = Vec3::Zero();
         for (const Index n : neighbours_[loop[i]])
-          if (!fixed(n)) below += wall_.nodes.col(n), ++inner;
+          if (!fixed(n)) below += at(n), ++inner;
         if (inner > 0) target += 0.5 * curve.way(target, curve.nearest(below / inner));
         const double lo = curve.way(along[i], before), hi = curve.way(along[i], after);
         along[i] += std::clamp(curve.way(along[i], target), 0.5 * lo, 0.5 * hi);
-        wall_.nodes.col(loop[i]) = curve.at(along[i]);
-        normal_[static_cast<std::size_t>(loop[i])] = lumen_.nearest(wall_.nodes.col(loop[i])).normal;
+        vec::set_column(wall_.nodes, loop[i], curve.at(along[i]));
+        normal_[static_cast<std::size_t>(loop[i])] = lumen_.nearest(at(loop[i])).normal;
       }
     }
   }

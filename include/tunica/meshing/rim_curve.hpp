@@ -5,6 +5,7 @@
 #include "tunica/core/error.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/cap_planes.hpp"
+#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +24,10 @@ class RimCurve {
   RimCurve(std::string name, const CapPlane& plane, const std::vector<Vec3>& points)
       : name_(std::move(name)), plane_(plane) {
     length_.push_back(0);
-    for (const Vec3& x : points) points_.push_back(x - plane.normal * plane.normal.dot(x - plane.point));
+    for (const Vec3& x : points)
+      points_.push_back(x - plane.normal * vec::dot(plane.normal, x - plane.point));
     for (std::size_t i = 0; i < points.size(); ++i)
-      length_.push_back(length_.back() + (points_[(i + 1) % points.size()] - points_[i]).norm());
+      length_.push_back(length_.back() + vec::distance(points_[(i + 1) % points.size()], points_[i]));
   }
 
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -37,9 +39,9 @@ class RimCurve {
     double best = std::numeric_limits<double>::infinity(), where = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Vec3 &a = points_[i], &b = points_[(i + 1) % points_.size()];
-      const double square = (b - a).squaredNorm();
-      const double t = square > 0 ? std::clamp((x - a).dot(b - a) / square, 0.0, 1.0) : 0.0;
-      const double d = (a + t * (b - a) - x).squaredNorm();
+      const double square = vec::dot(b - a, b - a);
+      const double t = square > 0 ? std::clamp(vec::dot(x - a, b - a) / square, 0.0, 1.0) : 0.0;
+      const double d = vec::distance(a + t * (b - a), x);
       if (d < best) best = d, where = length_[i] + t * (length_[i + 1] - length_[i]);
     }
     return wrapped(where);
@@ -102,7 +104,7 @@ struct Rims {
     if (!next[r].empty()) {
       Index at = next[r].begin()->first;
       do {
-        points.push_back(surface.nodes.col(at));
+        points.push_back(vec::column(surface.nodes, at));
         const auto step = next[r].find(at);
         if (step == next[r].end() || points.size() > next[r].size()) break;
         at = step->second;

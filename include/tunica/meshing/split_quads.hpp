@@ -4,6 +4,7 @@
 
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/triangle.hpp"
+#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +20,7 @@ namespace tunica::meshing {
   surface.cells.resize(3, 2 * quads.cells.cols());
   surface.region_names = quads.region_names;
   for (Index q = 0; q < quads.cell_count(); ++q) {
-    const auto corner = [&](int k) { return Vec3(quads.nodes.col(quads.cells(k, q))); };
+    const auto corner = [&](int k) { return vec::column(quads.nodes, quads.cells(k, q)); };
     std::array<double, 2> angle{};
     for (std::size_t w = 0; w < 2; ++w) {
       const auto& k = ways[w];

@@ -5,6 +5,7 @@
 #include "tunica/core/expect.hpp"
 #include "tunica/mesh/measures.hpp"
 #include "tunica/mesh/mesh.hpp"
+#include "tunica/meshing/vec.hpp"
 #include "tunica/meshing/vertex_normals.hpp"
 #include "tunica/search/octree.hpp"
 
@@ -49,7 +50,7 @@ class FootFinder {
   /// The nearest among the triangles that face the same way as the normal: not the far side of a fold.
   [[nodiscard]] Foot nearest_facing(const Vec3& x, const Vec3& normal) const {
     const auto found = tree_.nearest(x, [&](Index i) {
-      const bool facing = triangle(i).area_vector().dot(normal) > 0;
+      const bool facing = vec::dot(triangle(i).area_vector(), normal) > 0;
       return facing ? squared(x, i) : std::numeric_limits<double>::infinity();
     });
     return found.item >= 0 && std::isfinite(found.squared_distance) ? foot(x, found) : nearest(x);
@@ -61,7 +62,8 @@ class FootFinder {
   }
   [[nodiscard]] double squared(const Vec3& x, Index item) const {
     const auto t = triangle(item);
-    return (t.at(t.nearest(x)) - x).squaredNorm();
+    const Vec3 way = t.at(t.nearest(x)) - x;
+    return vec::dot(way, way);
   }
   [[nodiscard]] Foot foot(const Vec3& x, const search::Nearest& found) const {
     if (found.item < 0) return {x, Vec3::Zero()};
@@ -72,7 +74,7 @@ class FootFinder {
       n += weights[k] *
            normals_.of(region_, surface_.cells(k, triangles_[static_cast<std::size_t>(found.item)]));
     const Vec3 p = t.at(weights);
-    return {p, n.norm() > 0 ? Vec3(n.normalized()) : Vec3(t.area_vector().normalized()), (p - x).norm()};
+    return {p, vec::length(n) > 0 ? vec::unit(n) : vec::unit(t.area_vector()), vec::distance(p, x)};
   }
 
   const mesh::Surface& surface_;

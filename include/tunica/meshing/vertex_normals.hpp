@@ -4,8 +4,7 @@
 
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/cap_planes.hpp"
-
-#include <Eigen/Geometry>
+#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,7 @@ namespace tunica::meshing {
 
 /// The angle at p between q and r [rad].
 [[nodiscard]] inline double corner_angle(const Vec3& p, const Vec3& q, const Vec3& r) {
-  return std::atan2((q - p).cross(r - p).norm(), (q - p).dot(r - p));
+  return std::atan2(vec::length(vec::cross(q - p, r - p)), vec::dot(q - p, r - p));
 }
 
 /// Normals by (region, node): where regions meet each has its own.
@@ -35,8 +34,7 @@ class RegionNormals {
         entries_[++last] = entries_[i];
     }
     if (!entries_.empty()) entries_.resize(last + 1);
-    for (auto& [key, n] : entries_)
-      if (n.norm() > 0) n.normalize();
+    for (auto& [key, n] : entries_) n = vec::unit(n);
   }
   /// Zero where there is none.
   [[nodiscard]] Vec3 of(Index region, Index node) const {
@@ -54,8 +52,8 @@ class RegionNormals {
   for (Index t = 0; t < surface.cell_count(); ++t) {
     const auto x = mesh::triangle(surface, t);
     const Vec3 area = x.area_vector();
-    if (!(area.norm() > 0)) continue;
-    const Vec3 n = area.normalized();
+    if (!(vec::length(area) > 0)) continue;
+    const Vec3 n = vec::unit(area);
     const Index r = surface.region_of(t);
     normals.add(r, surface.cells(0, t), corner_angle(x.a, x.b, x.c) * n);
     normals.add(r, surface.cells(1, t), corner_angle(x.b, x.c, x.a) * n);

@@ -7,6 +7,7 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/quad_adjacency.hpp"
 #include "tunica/meshing/rim_curve.hpp"
+#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -135,7 +136,7 @@ class WallSelection {
                turn = 2 * std::numbers::pi / curve.length();
   double c = 0, s = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const double shift = turn * (curve.nearest(nodes.col(loop[i])) - step * static_cast<double>(i));
+    const double shift = turn * (curve.nearest(vec::column(nodes, loop[i])) - step * static_cast<double>(i));
     c += std::cos(shift), s += std::sin(shift);
   }
   std::vector<double> along;
@@ -168,7 +169,7 @@ class WallSelection {
   std::vector<Vec3> points(static_cast<std::size_t>(count));
   for (Index n = 0; n < contour.node_count(); ++n)
     if (number[static_cast<std::size_t>(n)] >= 0)
-      points[static_cast<std::size_t>(number[static_cast<std::size_t>(n)])] = contour.nodes.col(n);
+      points[static_cast<std::size_t>(number[static_cast<std::size_t>(n)])] = vec::column(contour.nodes, n);
 
   std::vector<Index> next(static_cast<std::size_t>(count), -1), cap(static_cast<std::size_t>(count), 0);
   for (Index h = 0; h < 4 * contour.cell_count(); ++h) {
@@ -220,7 +221,7 @@ class WallSelection {
   for (std::size_t r = 0; r < rims.curves.size(); ++r) {
     wall.along.push_back(detail::spread_over(rims.curves[r], wall.nodes, wall.loops[r]));
     for (std::size_t i = 0; i < wall.loops[r].size(); ++i)
-      wall.nodes.col(wall.loops[r][i]) = rims.curves[r].at(wall.along[r][i]);
+      vec::set_column(wall.nodes, wall.loops[r][i], rims.curves[r].at(wall.along[r][i]));
   }
   return wall;
 }
