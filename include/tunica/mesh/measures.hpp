@@ -5,14 +5,18 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/triangle.hpp"
 
-#include <Eigen/LU>
-
 #include <array>
+#include <cstddef>
 
 namespace tunica::mesh {
 
 [[nodiscard]] inline Triangle triangle(const Surface& s, Index t) {
   return {s.nodes.col(s.cells(0, t)), s.nodes.col(s.cells(1, t)), s.nodes.col(s.cells(2, t))};
+}
+
+/// Place of a node.
+[[nodiscard]] inline Vec3 node(const Surface& s, Index n) {
+  return s.nodes.col(n);
 }
 
 template <int Dim>
@@ -77,14 +81,14 @@ template <int Dim>
   double sum = 0;
   for (Index c = 0; c < m.cell_count(); ++c)
     for (const auto& p : corner) {
-      Eigen::Matrix3d J = Eigen::Matrix3d::Zero();  // dx/dxi
+      std::array<Vec3, 3> J{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // dx/dxi, dx/deta, dx/dzeta
       for (std::size_t n = 0; n < 8; ++n) {
         const auto& q = corner[n];
         const double u = 1 + g * p[0] * q[0], v = 1 + g * p[1] * q[1], w = 1 + g * p[2] * q[2];
-        const Eigen::RowVector3d dN(q[0] * v * w / 8, u * q[1] * w / 8, u * v * q[2] / 8);
-        J += m.nodes.col(m.cells(static_cast<Eigen::Index>(n), c)) * dN;
+        const Vec3 x = m.nodes.col(m.cells(static_cast<Eigen::Index>(n), c));
+        J[0] += (q[0] * v * w / 8) * x, J[1] += (u * q[1] * w / 8) * x, J[2] += (u * v * q[2] / 8) * x;
       }
-      sum += J.determinant();
+      sum += J[0].dot(J[1].cross(J[2]));
     }
   return sum;
 }

@@ -96,9 +96,10 @@ namespace detail {
     for (Index h = first; h >= 0 && !done[static_cast<std::size_t>(h)];) {
       done[static_cast<std::size_t>(h)] = 1;
       const auto [from, to] = half_edge(s.cells, h);
-      const double l = (s.nodes.col(to) - s.nodes.col(from)).norm();
+      const Vec3 x = node(s, from), y = node(s, to);
+      const double l = (y - x).norm();
       loop.nodes.push_back(from);
-      loop.centre += 0.5 * l * (s.nodes.col(from) + s.nodes.col(to));
+      loop.centre += 0.5 * l * (x + y);
       loop.length += l;
       h = leaves[static_cast<std::size_t>(to)];
     }

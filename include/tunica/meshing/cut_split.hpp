@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -45,22 +44,23 @@ class Splitter {
     sign_.assign(x_.size(), 0);
     for (std::size_t n = 0; n < x_.size(); ++n) sign_[n] = distance_[n] < 0 ? -1 : 1;
     snapped_ = PlaneSnap(s_, plane_, avoided, x_, distance_, sign_).run(active);
-    std::map<std::pair<Index, Index>, Index> made;
-    const auto between = [&](Index a, Index b) {
-      const auto key = std::minmax(a, b);
-      const auto [it, fresh] = made.try_emplace(key, static_cast<Index>(x_.size()));
-      if (fresh) {
-        const auto [lo, hi] = key;
-        const double dl = plane_.distance(x_[at(lo)]), dh = plane_.distance(x_[at(hi)]);
-        const Vec3 x = x_[at(lo)] + dl / (dl - dh) * (x_[at(hi)] - x_[at(lo)]);
-        x_.push_back(plane_.projected(x));
-        sign_.push_back(0);
+    std::vector<Index> made(twin_.size(), -1);  // the node in the plane on a half-edge and its twin
+    const auto between = [&](Index h) {
+      const Index g = std::min(h, twin_[at(h)]);
+      if (made[at(g)] < 0) {
+        const auto e = mesh::half_edge(s_.cells, g);
+        const Vec3 &p = x_[at(e.from)], &q = x_[at(e.to)];
+        const double dp = plane_.distance(p), dq = plane_.distance(q);
+        const Vec3 x = plane_.projected(p + dp / (dp - dq) * (q - p));
+        made[at(g)] = static_cast<Index>(x_.size());
+        x_.push_back(x), sign_.push_back(0);
       }
-      return it->second;
+      return made[at(g)];
     };
     for (Index t = 0; t < s_.cell_count(); ++t) {
       const std::array<Index, 3> v{s_.cells(0, t), s_.cells(1, t), s_.cells(2, t)};
-      const auto [lo, hi] = std::minmax({sign_[at(v[0])], sign_[at(v[1])], sign_[at(v[2])]});
+      const int lo = std::min({sign_[at(v[0])], sign_[at(v[1])], sign_[at(v[2])]});
+      const int hi = std::max({sign_[at(v[0])], sign_[at(v[1])], sign_[at(v[2])]});
       if (!active[at(t)] || lo == hi || lo * hi == 0) {
         add(v, t, active[at(t)] && lo == 0 && hi == 0 ? 0 : lo < 0 ? -1 : 1);
         continue;
@@ -71,7 +71,7 @@ class Splitter {
         for (std::size_t k = 0; k < 3; ++k) {
           const Index a = v[k], b = v[(k + 1) % 3];
           if (sign_[at(a)] * side >= 0) p[size++] = a;
-          if (sign_[at(a)] * sign_[at(b)] < 0) p[size++] = between(a, b);
+          if (sign_[at(a)] * sign_[at(b)] < 0) p[size++] = between(3 * t + static_cast<Index>(k));
         }
         if (size == 3) {
           add({p[0], p[1], p[2]}, t, side);

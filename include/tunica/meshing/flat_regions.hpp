@@ -42,7 +42,7 @@ inline constexpr double flat_tolerance = 1e-9;
   for (Index t = 0; t < s.cell_count(); ++t)
     for (int k = 0; k < 3; ++k) {
       const auto r = static_cast<std::size_t>(s.region_of(t));
-      off[r] = std::max(off[r], std::abs(normal[r].dot(s.nodes.col(s.cells(k, t)) - centre[r])));
+      off[r] = std::max(off[r], std::abs(normal[r].dot(mesh::node(s, s.cells(k, t)) - centre[r])));
     }
   const double tolerance = s.node_count() > 0 ? flat_tolerance * mesh::bounding_box(s.nodes).diagonal() : 0;
   std::vector<std::optional<Plane>> planes(regions);

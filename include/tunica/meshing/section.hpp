@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -72,7 +71,8 @@ struct SectionLoop {
   const auto front = [&](Index n) { return distance[static_cast<std::size_t>(n)] >= 0; };
   const auto place = [&](Index a, Index b) {
     const double da = distance[static_cast<std::size_t>(a)], db = distance[static_cast<std::size_t>(b)];
-    return frame(s.nodes.col(a) + da / (da - db) * (s.nodes.col(b) - s.nodes.col(a)));
+    const Vec3 x = mesh::node(s, a), y = mesh::node(s, b);
+    return frame(x + da / (da - db) * (y - x));
   };
   std::vector<SectionLoop> loops;
   std::vector<char> done(static_cast<std::size_t>(s.cell_count()), 0);
