@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // surface_to_mesh: a closed STL surface from anywhere to tetrahedra.
+#include "flat_ends.hpp"
 #include "image_pipeline.hpp"
 #include "output_files.hpp"
 #include "tunica/io/closed_surface.hpp"
@@ -11,8 +12,6 @@
 
 using namespace tunica;
 using namespace tunica::examples;
-
-constexpr double sharp_angle = 50;  // [degrees]: rims of caps turn by about 90, walls of vessels by less
 
 int main(int argc, char** argv) {
   std::string in, out, report_file;
@@ -36,12 +35,13 @@ int main(int argc, char** argv) {
     auto closed = stage("read", [&] { return io::read_closed_stl(in); });
     for (const auto& notice : closed.notices) warn(report, notice);
     mesh::Surface& surface = closed.surface;
+    name_flat_ends(surface);  // their rims stay sharp, and they are patches of their own
     const auto topology = mesh::topology(surface);
     report["given"] = surface_figures(surface, topology);
     tell_topology(surface, topology, report);
     stage("remesh", [&] {
       if (!(edge > 0)) return;
-      auto remeshed = meshing::remesh(surface, {.edge = edge, .sharp_angle = sharp_angle});
+      auto remeshed = meshing::remesh(surface, {.edge = edge});
       surface = std::move(remeshed.surface);
       report["remesh"] = remesh_figures(remeshed.report);
     });

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// The program on surfaces from elsewhere: kept as given or remeshed, and every bad input.
+#include "programs/run_program.hpp"
+#include "support/shared.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+using namespace tunica::test;
+
+namespace {
+
+Outcome fill(const Folder& folder, const std::filesystem::path& surface, const std::string& options) {
+  return run(folder, program("surface_to_mesh") + " \"" + surface.string() + "\"" + options +
+                         " -o a.vtu --report r.json");
+}
+
+}  // namespace
+
+TEST_SUITE("job") {
+  TEST_CASE("surface_to_mesh: foreign surfaces are filled as they are given") {
+    const auto checker = shared("tools/check_mesh.py"), level_set = shared("data/vmtk_levelset_surface.stl"),
+               control = shared("data/bad/s00_control_closed.stl"),
+               turned = shared("data/bad/s10_inside_out.stl"),
+               solid = shared("data/bad/s08_binary_header_says_solid.stl");
+    if (!checker || !level_set || !control || !turned || !solid || program("surface_to_mesh").empty()) return;
+    const auto kept = [&](const std::filesystem::path& surface, double volume, bool was_turned) {
+      CAPTURE(surface.string());
+      const Folder folder;
+      const auto o = fill(folder, surface, "");
+      INFO(o.err);
+      REQUIRE(o.status == 0);
+      const std::string report = text_of(folder.path() / "r.json");
+      MESSAGE(surface.filename().string(), ": ", figure(report, {"fill", "tetrahedra"}),
+              " tetrahedra, smallest dihedral angle ", figure(report, {"fill", "smallest_dihedral_degrees"}),
+              " degrees, smallest angle of the surface ",
+              figure(report, {"fill", "surface_smallest_angle_degrees"}));
+      CHECK(std::abs(figure(report, {"fill", "volume"}) - volume) < 1e-4 * volume);
+      CHECK(figure(report, {"fill", "inverted"}) == 0);
+      CHECK(has(o.err, "warning: ") == was_turned);
+      CHECK(has(o.err, "inside out") == was_turned);
+      CHECK(faults(*checker, folder, "a.vtu --surface a.surface.vtp --tol 0") == "");
+      if (!was_turned) CHECK(faults(*checker, folder, "a.vtu --surface \"" + surface.string() + "\"") == "");
+    };
+    kept(*level_set, 13184.27, true);
+    kept(*control, 10089.94, false);
+    kept(*solid, 10089.94, false);
+    kept(*turned, 10089.94, true);
+  }
+
+  TEST_CASE("surface_to_mesh: a remeshed surface keeps its volume and its rims") {
+    const auto checker = shared("tools/check_mesh.py"), lumen = shared("data/lumen_iso1299.5_clipped.stl");
+    if (!checker || !lumen || program("surface_to_mesh").empty()) return;
+    const Folder folder;
+    const auto o = fill(folder, *lumen, " --edge 2");
+    INFO(o.err);
+    REQUIRE(o.status == 0);
+    const std::string report = text_of(folder.path() / "r.json");
+    MESSAGE("volume ", figure(report, {"fill", "volume"}), " mm3, smallest angle ",
+            figure(report, {"surface", "smallest_angle_degrees"}), ", smallest dihedral angle ",
+            figure(report, {"fill", "smallest_dihedral_degrees"}), " degrees");
+    CHECK(std::abs(figure(report, {"fill", "volume"}) - 10154.17) < 0.005 * 10154.17);
+    CHECK(figure(report, {"fill", "inverted"}) == 0);
+    CHECK(figure(report, {"surface", "smallest_angle_degrees"}) >= 15);
+    CHECK(figure(report, {"fill", "smallest_dihedral_degrees"}) >= 5);
+    for (const auto& [name, area] :
+         std::map<std::string, double>{{"flat 1", 171.70}, {"flat 2", 53.79}, {"flat 3", 48.04}})
+      CHECK(std::abs(figure(report.substr(report.find(name)), {"area"}) - area) <
+            1);  // the ends of the vessel
+    CHECK(faults(*checker, folder, "a.vtu --surface a.surface.vtp --tol 0") == "");
+  }
+
+  TEST_CASE("surface_to_mesh: every bad surface ends with its sentence and leaves no file") {
+    const auto bad = shared("data/bad");
+    if (!bad || program("surface_to_mesh").empty()) return;
+    const auto refused = [&](const std::string& name, const std::string& options, int status,
+                             const std::string& part) {
+      CAPTURE(name);
+      const Folder folder;
+      const auto o = fill(folder, *bad / name, options);
+      CAPTURE(o.err);
+      CHECK(o.status == status);
+      CHECK(has("\n" + o.err, "\nerror: "));
+      CHECK(has(o.err, part));
+      CHECK(folder.files().empty());
+    };
+    refused("s01_nonmanifold_edge.stl", "", 1, "is shared by 4 facets");
+    refused("s02_open_hole.stl", "", 1, "1 boundary loop: 11 edges around (");
+    refused("s04_ascii_junk.stl", "", 1, "line 31 ");
+    refused("s06_truncated_binary.stl", "", 1,
+            "says 1702 facets, the file holds 700 whole ones and 17 stray bytes");
+    refused("s12_zero_facets.stl", "", 1, "0 facets");
+    refused("none.stl", "", 1, "no such file");
+    refused("v00_control_ok.vtk", "", 1, "the header says ");
+    refused("s00_control_closed.stl", " --edge 0", 2, "--edge: must be more than 0");
+    refused("s00_control_closed.stl", " --egde 2", 2, "did you mean --edge?");
+    refused("s00_control_closed.stl", " another.stl", 2, "unexpected argument \"another.stl\"");
+  }
+}
