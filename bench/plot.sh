@@ -17,4 +17,9 @@ set key top right
 rows = "bench/results/isosurface.csv"
 plot rows using (strcol(2) eq "marching cubes" ? $6 : NaN):5 with linespoints pt 7 lw 2 title "marching cubes", \
      rows using (strcol(2) eq "vtkFlyingEdges3D" ? $6 : NaN):5 with linespoints pt 6 lw 2 title "vtkFlyingEdges3D"
+
+set output "docs/figures/thick_tube.svg"
+set ylabel "error of the inner stretch [-]"
+rows = "bench/results/thick_tube.csv"
+plot rows using 6:5 with linespoints pt 7 lw 2 title "Hex8, three-field (Q1-P0-J0)"
 PLOT

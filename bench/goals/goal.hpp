@@ -29,5 +29,6 @@ struct Goal {
 [[nodiscard]] std::vector<Goal> smoothing_goals();
 [[nodiscard]] std::vector<Goal> filling_goals();
 [[nodiscard]] std::vector<Goal> solid_goals();
+[[nodiscard]] std::vector<Goal> fluid_goals();
 
 }  // namespace tunica::bench
