@@ -180,16 +180,18 @@ class Projection {
     history_ = bdf.last * state_.velocity + bdf.before * state_.velocity_old;
     p_ = state_.pressure;
     evaluate_force(t, next_);
-    conditions_.impose_pressure(next_, t, prescribed_);
-    conditions_.impose_pressure(state_.position, state_.time, increment_);
-    increment_ = prescribed_ - increment_;
+    // The first pass starts from p^n: the traction that goes with it is that of t^n. What the prescribed
+    // pressure has changed since comes with the increment; a load at t^{n+1} would lag by a step.
+    conditions_.impose_pressure(state_.position, state_.time, prescribed_);
+    conditions_.impose_pressure(next_, t, prescribed_now_);
+    increment_ = prescribed_now_ - prescribed_;
     guess_ = first ? Eigen::VectorXd(increment_) : Eigen::VectorXd(state_.pressure - state_.pressure_old);
 
     a_ = u_ - w_;
     pressure_step_.assemble(domain, fluid_, stabilization_, a_, u_, 1 / (fluid_.density * bdf.now));
     SolveReport report{Status::converged, 0, 0};
     for (int pass = 0; pass < options_.passes; ++pass) {
-      if (pass > 0) a_ = u_ - w_, increment_.setZero(), guess_.setZero();
+      if (pass > 0) a_ = u_ - w_, increment_.setZero(), guess_.setZero(), prescribed_ = prescribed_now_;
       SolveReport solved = predict(domain, bdf);
       if (solved) {
         solved = pressure_step_.correct(domain, force_, options_.rotational * thin_viscosity(),
@@ -206,7 +208,7 @@ class Projection {
       next_u_ = bdf.now * u_ + history_;
       a_ = u_ - w_;
       state_.force = interface_.evaluate(
-          cells_, tets_, fluid_, stabilization_, conditions_, next_, prescribed_,
+          cells_, tets_, fluid_, stabilization_, conditions_, next_, prescribed_now_,
           {.a = a_, .u = u_, .rate = next_u_, .p = p_, .force = force_, .smoothed = smoothed_});
     }
     state_.velocity_old.swap(state_.velocity), state_.velocity = u_;
@@ -337,7 +339,7 @@ class Projection {
   la::RowMatrix matrix_;
   la::Ilu0<3> incomplete_;
   Points<3> u_, a_, w_, next_u_, history_, force_, smoothed_, right_;
-  Eigen::VectorXd p_, prescribed_, increment_, guess_, solution_, product_;
+  Eigen::VectorXd p_, prescribed_, prescribed_now_, increment_, guess_, solution_, product_;
 };
 
 }  // namespace tunica::fluid

@@ -9,9 +9,9 @@ namespace tunica::fluid {
 /// Density [kg/m3] and dynamic viscosity [Pa s] at a shear rate sqrt(2 eps:eps) [1/s].
 ///   struct Water { double density = 998; double viscosity_at(double) const { return 1.0e-3; } };
 template <class R>
-concept Rheology = requires(const R& r, double shear_rate) {
-  { r.density } -> std::convertible_to<double>;
-  { r.viscosity_at(shear_rate) } -> std::convertible_to<double>;
+concept Rheology = requires(const R& r, double rate) {
+  { r.density } -> std::convertible_to<double>;             // a fluid has a density
+  { r.viscosity_at(rate) } -> std::convertible_to<double>;  // a fluid has a viscosity at a shear rate
 };
 
 struct Newtonian {

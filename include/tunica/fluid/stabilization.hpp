@@ -12,8 +12,8 @@ namespace tunica::fluid {
 ///   const; };
 template <class S>
 concept Stabilization = requires(const S& s, double v) {
-  { s.mass(v, v, v, v) } -> std::convertible_to<double>;
-  { s.momentum(v, v, v, v, v) } -> std::convertible_to<double>;
+  { s.mass(v, v, v, v) } -> std::convertible_to<double>;         // it has a time for the mass
+  { s.momentum(v, v, v, v, v) } -> std::convertible_to<double>;  // it has a time for the momentum
 };
 
 /// tau = [8 mu/h^2 + 2 rho max(|a|, c)/h]^-1, t_m = min([8 mu/h^2 + 2 rho |a|/h]^-1, h_a / (2 rho |a|)):
