@@ -2,8 +2,7 @@
 // The momentum predictor on linear tetrahedra: one scalar matrix for the three components. [PEREZ08, (1)]
 #pragma once
 
-#include "tunica/fem/assembly.hpp"
-#include "tunica/fem/p1_tets.hpp"
+#include "tunica/fluid/domain.hpp"
 #include "tunica/fluid/rheology.hpp"
 #include "tunica/fluid/stabilization.hpp"
 #include "tunica/la/vector_ops.hpp"
@@ -12,8 +11,6 @@
 #include <cmath>
 
 namespace tunica::fluid {
-
-using Pattern = fem::Assembly<mesh::Tet4, 1>;
 
 /// The nodal fields of a cell as columns.
 template <int Rows, class Field>

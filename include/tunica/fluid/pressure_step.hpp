@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tunica/fluid/coarse_space.hpp"
-#include "tunica/fluid/conditions.hpp"
+#include "tunica/fluid/domain.hpp"
 #include "tunica/fluid/momentum.hpp"
 #include "tunica/fluid/pressure_operator.hpp"
 #include "tunica/fluid/state.hpp"
@@ -17,16 +17,6 @@
 #include <vector>
 
 namespace tunica::fluid {
-
-/// The discretisation that a correction works on.
-struct Domain {
-  const Pattern& pattern;
-  const Connectivity<4>& cells;
-  const fem::P1Tets& tets;
-  const Points<3>& position;            // 3 x nodes [m]
-  const Eigen::VectorXd& inverse_mass;  // 1 / M_L: nodes [1/m3]
-  const Conditions& conditions;
-};
 
 class PressureStep {
  public:

@@ -6,14 +6,12 @@
 #include "tunica/core/expect.hpp"
 #include "tunica/core/solve_report.hpp"
 #include "tunica/fluid/bdf.hpp"
-#include "tunica/fluid/boundary_terms.hpp"
 #include "tunica/fluid/conditions.hpp"
 #include "tunica/fluid/interface_force.hpp"
-#include "tunica/fluid/momentum.hpp"
+#include "tunica/fluid/predictor.hpp"
 #include "tunica/fluid/pressure_step.hpp"
+#include "tunica/fluid/start.hpp"
 #include "tunica/fluid/state.hpp"
-#include "tunica/la/bicgstab.hpp"
-#include "tunica/la/preconditioner.hpp"
 
 #include <cmath>
 #include <string_view>
@@ -59,7 +57,7 @@ class Projection {
         pattern_(mesh),
         conditions_(mesh),
         pressure_step_(pattern_, mesh.nodes, volume(mesh)),
-        matrix_(pattern_.template matrix<Eigen::RowMajor>()) {
+        predictor_(pattern_) {
     state_.position = state_.position_old = next_ = mesh.nodes;
     state_.velocity = state_.velocity_old = w_ = Points<3>::Zero(3, mesh.nodes.cols());
     state_.pressure = state_.pressure_old = Eigen::VectorXd::Zero(mesh.nodes.cols());
@@ -148,7 +146,8 @@ class Projection {
     next_u_ = u_;
     conditions_.impose_velocity(state_.position, w_, t + dt, next_u_);
     pressure_step_.assemble_laplacian(domain, 1);
-    Eigen::VectorXd right = initial_source(dt);
+    const Points<3> rate = (next_u_ - u_) / dt;
+    const Eigen::VectorXd right = initial_source(domain, fluid_.density, u_, rate, force_);
     conditions_.impose_pressure(state_.position, t, p_);
     report = pressure_step_.solve(domain, right, 0, zero, options, p_);
     if (!settled(report)) return report;
@@ -192,7 +191,10 @@ class Projection {
     SolveReport report{Status::converged, 0, 0};
     for (int pass = 0; pass < options_.passes; ++pass) {
       if (pass > 0) a_ = u_ - w_, increment_.setZero(), guess_.setZero(), prescribed_ = prescribed_now_;
-      SolveReport solved = predict(domain, bdf);
+      SolveReport solved = predictor_.solve(
+          domain, fluid_, stabilization_, {a_, u_, history_, p_, force_, predictor_.smoothed(), bdf.now},
+          prescribed_, {.tolerance = options_.momentum_tolerance, .max_iterations = options_.max_iterations},
+          u_);
       if (solved) {
         solved = pressure_step_.correct(domain, force_, options_.rotational * thin_viscosity(),
                                         pressure_options(), guess_, increment_, u_, p_);
@@ -209,7 +211,7 @@ class Projection {
       a_ = u_ - w_;
       state_.force = interface_.evaluate(
           cells_, tets_, fluid_, stabilization_, conditions_, next_, prescribed_now_,
-          {.a = a_, .u = u_, .rate = next_u_, .p = p_, .force = force_, .smoothed = smoothed_});
+          {.a = a_, .u = u_, .rate = next_u_, .p = p_, .force = force_, .smoothed = predictor_.smoothed()});
     }
     state_.velocity_old.swap(state_.velocity), state_.velocity = u_;
     state_.pressure_old.swap(state_.pressure), state_.pressure = p_;
@@ -263,61 +265,6 @@ class Projection {
     for (Eigen::Index i = 0; i < force_.cols(); ++i) force_.col(i) = body_force_(x.col(i), t);
   }
 
-  [[nodiscard]] Eigen::VectorXd initial_source(double dt) const {
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(reference_.cols());
-    for (Index e = 0; e < cells_.cols(); ++e) {
-      const fem::P1Tet& tet = tets_[e];
-      const Eigen::Matrix<double, 3, 4> u = nodal<3>(u_, cells_, e);
-      Vec3 f = -fluid_.density * (u * tet.grad.transpose()) * u.rowwise().mean();
-      if (forced_) f += nodal<3>(force_, cells_, e).rowwise().mean();
-      for (int i = 0; i < 4; ++i) right[cells_(i, e)] += tet.volume * tet.grad.col(i).dot(f);
-    }
-    for (const Condition& c : conditions_.list()) {
-      if (c.kind != Kind::velocity) continue;
-      for (Eigen::Index k = 0; k < c.faces.cols(); ++k) {
-        const Vec3 n = Conditions::area_vector(state_.position, c.faces, k);
-        Vec3 rate;
-        for (int i = 0; i < 3; ++i) rate[i] = n.dot(next_u_.col(c.faces(i, k)) - u_.col(c.faces(i, k))) / dt;
-        const Vec3 load = fluid_.density * face_load(1, rate);
-        for (int i = 0; i < 3; ++i) right[c.faces(i, k)] -= load[i];
-      }
-    }
-    return right;
-  }
-
-  /// The momentum predictor: u_ from the last velocity of the pass to u*.
-  SolveReport predict(const Domain& domain, const Bdf& bdf) {
-    smooth_convection(pattern_, cells_, tets_, a_, u_, inverse_mass_, smoothed_);
-    assemble_momentum(pattern_, cells_, tets_, fluid_, stabilization_,
-                      {a_, u_, history_, p_, force_, smoothed_, bdf.now}, matrix_, right_);
-    add_boundary_terms(pattern_, conditions_, domain.position, a_, prescribed_, fluid_.density, matrix_,
-                       right_);
-    const auto& fixed = conditions_.velocity_flags();
-    const int* outer = matrix_.outerIndexPtr();
-    for (int i = 0; i < matrix_.rows(); ++i) {
-      if (!fixed[static_cast<std::size_t>(i)]) continue;
-      for (int k = outer[i]; k < outer[i + 1]; ++k) {
-        double& value = matrix_.valuePtr()[k];
-        if (matrix_.innerIndexPtr()[k] == i)
-          right_.col(i) = value * u_.col(i);
-        else
-          value = 0;
-      }
-    }
-    incomplete_.compute(matrix_);
-    solution_ = u_.reshaped();
-    const Eigen::VectorXd b = right_.reshaped();
-    const la::ApplyMatrix<3> A{matrix_};
-    A.apply(solution_, product_);
-    const double floor = 1e-14 * std::max(la::norm(b), la::norm(product_));
-    const double goal = options_.momentum_tolerance * la::norm(b - product_);
-    const SolveReport report = la::bicgstab(
-        A, incomplete_, b, solution_,
-        {.tolerance = 0, .absolute = std::max(goal, floor), .max_iterations = options_.max_iterations});
-    u_ = solution_.reshaped(3, u_.cols());
-    return report;
-  }
-
   R fluid_;
   S stabilization_;
   ProjectionOptions options_;
@@ -336,10 +283,9 @@ class Projection {
   fem::P1Tets tets_;
   Eigen::VectorXd inverse_mass_;
   PressureStep pressure_step_;
-  la::RowMatrix matrix_;
-  la::Ilu0<3> incomplete_;
-  Points<3> u_, a_, w_, next_u_, history_, force_, smoothed_, right_;
-  Eigen::VectorXd p_, prescribed_, prescribed_now_, increment_, guess_, solution_, product_;
+  Predictor predictor_;
+  Points<3> u_, a_, w_, next_u_, history_, force_;
+  Eigen::VectorXd p_, prescribed_, prescribed_now_, increment_, guess_;
 };
 
 }  // namespace tunica::fluid
