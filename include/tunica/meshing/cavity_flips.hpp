@@ -17,7 +17,7 @@ namespace tunica::meshing {
 
 class CavityFlips {
  public:
-  static constexpr int longest_ring = 24;
+  static constexpr int longest_ring = 12, deep_rounds = 6;
 
   explicit CavityFlips(TetComplex& complex) : c(complex) {}
 
@@ -70,6 +70,30 @@ class CavityFlips {
     }
     c.replace(ring.tets, fresh, open);
     return true;
+  }
+
+  /// As remove_edge; when the ring resists, edges from a or b to its nodes are removed first, so
+  /// that it gets smaller. locked(x, y): edges that must stay.
+  template <class Allowed, class Locked>
+  bool remove_edge_deep(Index t, Index a, Index b, Allowed&& allowed, Locked&& locked) {
+    if (locked(a, b)) return false;
+    for (int round = 0; round < deep_rounds; ++round) {
+      if (remove_edge(t, a, b, 0, allowed)) return true;
+      const std::vector<Index> link = ring.link;
+      bool smaller = false;
+      for (std::size_t i = 0; i < link.size() && !smaller; ++i)
+        for (const Index end : {a, b}) {
+          if (locked(end, link[i])) continue;
+          const Index other = end == a ? b : a;
+          const auto chord = [&](Index x, Index y) { return x != other && y != other && allowed(x, y); };
+          smaller = remove_edge(c.tet_with(end, link[i], scratch), end, link[i], 0, chord);
+          if (smaller) break;
+        }
+      if (!smaller) return false;
+      t = c.tet_with(a, b, scratch);
+      if (t < 0) return true;
+    }
+    return false;
   }
 
   /// Puts node p into the edge (a, b) of t: every tetrahedron of the ring is halved.

@@ -16,12 +16,16 @@ class Delaunay {
  public:
   /// Builds the triangulation of complex.points inside one large tetrahedron, whose four nodes are
   /// added at the end. MeshError when two points coincide.
-  static void build(TetComplex& complex) { Delaunay(complex).run(); }
+  explicit Delaunay(TetComplex& complex) : c_(complex) { build(); }
+
+  /// Inserts one more node, a point inside of all.
+  void insert(Index p) {
+    if (!c_.alive(last_)) last_ = c_.tet_of[0];
+    insert_at(p);
+  }
 
  private:
-  explicit Delaunay(TetComplex& complex) : c_(complex) {}
-
-  void run() {
+  void build() {
     Box box;
     for (const Vec3& p : c_.points) box.extend(p);
     const Index count = static_cast<Index>(c_.points.size());
@@ -32,7 +36,7 @@ class Delaunay {
     const Index c = c_.add_point(o + r * Vec3(-1, 3, -1)), d = c_.add_point(o + r * Vec3(-1, -1, 3));
     last_ = c_.add({a, b, c, d});
     const auto order = insertion_order(std::span(c_.points).first(static_cast<std::size_t>(count)), box);
-    for (const Index p : order) insert(p);
+    for (const Index p : order) insert_at(p);
   }
 
   [[nodiscard]] Index locate(const Vec3& x) const {
@@ -54,7 +58,7 @@ class Delaunay {
     return insphere(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), c_.point(n[3]), x) > 0;
   }
 
-  void insert(Index p) {
+  void insert_at(Index p) {
     const Vec3 x = c_.point(p);
     const Index first = locate(x);
     for (const Index n : c_.nodes(first))

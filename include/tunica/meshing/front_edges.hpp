@@ -32,6 +32,7 @@ class FrontEdges {
   /// Brings in the edge; with_points: Steiner points may be used. False: it is still missing.
   enum class Means { flips, points };
   bool recover(Index edge, Means means) {
+    deep_left_ = means == Means::flips ? most_deep : 0;
     const auto [a, b, triangles] = s_.edges[at(edge)];
     if (s_.chain.count(edge) > 0) return true;
     for (int turn = 0; turn < 2; ++turn)
@@ -92,7 +93,7 @@ class FrontEdges {
   }
 
  private:
-  static constexpr int longest_chain = 1000, most_flips = 60;
+  static constexpr int longest_chain = 60, most_flips = 25, most_deep = 3;
   static constexpr double flat = 1e-6;  // sine of a dihedral angle that rounding may turn over
 
   struct Hit {
@@ -158,7 +159,10 @@ class FrontEdges {
 
   bool remove(Index t, Index x, Index y) {
     if (s_.locked(x, y)) return false;
-    return flips_.remove_edge(t, x, y, 0, [](Index, Index) { return true; });
+    const auto any = [](Index, Index) { return true; };
+    if (flips_.remove_edge(t, x, y, 0, any)) return true;
+    if (deep_left_-- <= 0) return false;
+    return flips_.remove_edge_deep(t, x, y, any, [&](Index p, Index q) { return s_.locked(p, q); });
   }
 
   /// The point where the segment meets a face, if no nearly flat tetrahedra come of it.
@@ -242,6 +246,7 @@ class FrontEdges {
   FrontSurface& s_;
   CavityFlips flips_;
   CavityInsert insert_;
+  int deep_left_ = 0;  // how often flips may remove other edges to remove one
   std::vector<Index> star_;
 };
 

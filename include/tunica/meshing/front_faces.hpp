@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <set>
 #include <utility>
 #include <vector>
@@ -77,9 +79,15 @@ class FrontFaces {
       const int sx = side(x, f), sy = side(y, f);
       return sx * sy >= 0 || !(sx > 0 ? pierces(x, y, f) : pierces(y, x, f));
     };
-    return std::any_of(found_.begin(), found_.end(), [&](const Piercing& e) {
-      return !s_.locked(e.u, e.v) && flips_.remove_edge(e.tet, e.u, e.v, 0, allowed);
-    });
+    return std::any_of(found_.begin(), found_.end(),
+                       [&](const Piercing& e) {
+                         return !s_.locked(e.u, e.v) && flips_.remove_edge(e.tet, e.u, e.v, 0, allowed);
+                       }) ||
+           std::any_of(found_.begin(), found_.end(), [&](const Piercing& e) {
+             const Index t = c_.tet_with(e.u, e.v, star_);  // the search before may have changed its number
+             return t >= 0 && flips_.remove_edge_deep(t, e.u, e.v, allowed,
+                                                      [&](Index x, Index y) { return s_.locked(x, y); });
+           });
   }
 
   /// The piercing edges of the tetrahedra at the corners of f.
@@ -112,7 +120,7 @@ class FrontFaces {
       const Quad& n = c_.nodes(tet);
       int i = 0;
       while (n[at(i)] == t[0] || n[at(i)] == t[1] || n[at(i)] == t[2]) ++i;
-      c_.mark_both(4 * tet + i, f);
+      c_.mark_both(4 * tet + i, t, f);
       return true;
     }
     return false;
@@ -161,24 +169,34 @@ class FrontFaces {
     std::vector<int> sign(m);
     for (std::size_t i = 0; i < m; ++i) sign[i] = side(link[i], f);
     // Around (p, q) the left half of the plane is met from below to above.
-    double best = 0;
-    std::size_t below = m, zeros = 0;
     for (std::size_t i = 0; i < m; ++i) {
       if (sign[i] >= 0) continue;
       std::size_t gap = 0;
       while (gap < m && sign[(i + 1 + gap) % m] == 0) ++gap;
       if (sign[(i + 1 + gap) % m] < 0) continue;
-      const Vec3 x = gap > 0 ? c_.point(link[(i + 1) % m]) : meeting(f, link[i], link[(i + 1) % m], 0);
-      const double reach = left.dot(x - c_.point(p));
-      if (below == m || reach > best) best = reach, below = i, zeros = gap;
+      for (std::size_t k = 0; k < gap; ++k)
+        if (const Index w = link[(i + 1 + k) % m]; left.dot(c_.point(w) - c_.point(p)) > 0) return w;
+      const Index u = link[i], v = link[(i + 1) % m];
+      if (gap == 0 && left.dot(meeting(f, u, v, 0) - c_.point(p)) > 0)
+        return split(f, flips_.ring.tets[i], u, v);
     }
-    if (below == m) throw RecoveryFailure{c_.point(p), "a face has no inside at an edge"};
-    if (zeros > 0) {
-      for (std::size_t k = 0; k < zeros; ++k)
-        if (const Index w = link[(below + 1 + k) % m]; s_.on(w, f)) return w;
-      throw RecoveryFailure{c_.point(p), "a node of another part lies on a face"};
+    // Rounded Steiner points have spoilt the signs: the directions decide.
+    const auto turn = [&](Index n) {
+      const Vec3 x = c_.point(n) - c_.point(p);
+      return std::atan2(normal.normalized().dot(x), left.dot(x));
+    };
+    double best = 0.5;  // [rad]
+    Index nearest = -1;
+    for (std::size_t i = 0; i < m; ++i)
+      if (s_.on(link[i], f) && std::abs(turn(link[i])) < best)
+        best = std::abs(turn(link[i])), nearest = link[i];
+    if (nearest >= 0) return nearest;
+    for (std::size_t i = 0; i < m; ++i) {
+      const Index u = link[i], v = link[(i + 1) % m];
+      if (turn(u) < 0 && turn(v) >= 0 && turn(v) - turn(u) < std::numbers::pi)
+        return split(f, flips_.ring.tets[i], u, v);
     }
-    return split(f, flips_.ring.tets[below], link[below], link[(below + 1) % m]);
+    throw RecoveryFailure{c_.point(p), "a face has no inside at an edge"};
   }
 
   /// Where the edge (u, v) meets the plane of f, at least `margin` of it from both ends.

@@ -6,20 +6,10 @@
 #include "tunica/core/error.hpp"
 #include "tunica/meshing/front_surface.hpp"
 
-#include <Eigen/Geometry>
-
 #include <cstddef>
 #include <vector>
 
 namespace tunica::meshing {
-
-namespace detail {
-
-[[nodiscard]] inline Vec3 normal(const TetComplex& c, const Triple& n) {
-  return (c.point(n[1]) - c.point(n[0])).cross(c.point(n[2]) - c.point(n[0]));
-}
-
-}  // namespace detail
 
 /// One flag a tetrahedron: 1 inside. Needs every triangle of the surface marked.
 [[nodiscard]] inline std::vector<char> inside_of(TetComplex& c, const FrontSurface& surface) {
@@ -45,9 +35,7 @@ namespace detail {
           region.push_back(s / 4);
           continue;
         }
-        // From inside, the face turns as its triangle does.
-        const Triple &n = surface.triangles[at(m)], own = c.face(t, f);
-        (detail::normal(c, own).dot(detail::normal(c, n)) > 0 ? votes_in : votes_out) = m;
+        (m % 2 == 0 ? votes_in : votes_out) = m / 2;
       }
     const auto place = [&](Index m) { return place_text(c.point(surface.triangles[at(m)][0])); };
     if (touches_far && votes_in >= 0)

@@ -5,6 +5,7 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/meshing/delaunay.hpp"
+#include "tunica/meshing/front_conform.hpp"
 #include "tunica/meshing/front_edges.hpp"
 #include "tunica/meshing/front_faces.hpp"
 #include "tunica/meshing/front_inside.hpp"
@@ -29,19 +30,19 @@ struct RecoveryCounts {
 
 class FrontRecovery {
  public:
-  /// In which order the missing parts are brought in: another one is another chance.
-  enum class Order { forward, backward };
+  /// How missing edges are brought in: flips first, in ascending or descending order, or halving.
+  enum class Way { forward, backward, halving };
 
   /// Fills the complex with the inside of the surface. MeshError names what is wrong with the
   /// surface; RecoveryFailure asks for other inner points.
   static RecoveryCounts run(TetComplex& complex, const FrontSurface& surface, std::span<const Vec3> nodes,
-                            std::span<const Vec3> inner, Order order = Order::forward) {
+                            std::span<const Vec3> inner, Way way = Way::forward) {
     FrontRecovery work(complex, surface);
-    work.order_ = order;
+    work.way_ = way;
     complex.points.assign(nodes.begin(), nodes.end());
     complex.points.insert(complex.points.end(), inner.begin(), inner.end());
-    Delaunay::build(complex);
-    work.recover();
+    Delaunay delaunay(complex);
+    work.recover(delaunay);
     const auto inside = inside_of(complex, work.s_);
     complex.restrict_to([&](Index t) { return inside[static_cast<std::size_t>(t)] != 0; });
     FrontRelease(complex, work.s_).run();
@@ -56,13 +57,23 @@ class FrontRecovery {
     return static_cast<std::size_t>(i);
   }
 
-  void recover() {
+  void recover(Delaunay& delaunay) {
     std::vector<Index> edges, faces;
     find_missing(edges, faces);
     counts_.missing_edges = static_cast<Index>(edges.size());
     counts_.missing_faces = static_cast<Index>(faces.size());
     refuse_crossings(faces);
-    if (order_ == Order::backward)
+    if (way_ != Way::halving &&
+        static_cast<double>(edges.size()) > most_flipped * static_cast<double>(s_.edges.size()))
+      throw RecoveryFailure{c_.point(s_.edges[at(edges[0])].a),
+                            "the surface is too far from Delaunay for flips"};
+    if (way_ == Way::halving) {
+      counts_.steiner = FrontConform(c_, s_, delaunay).run();
+      edges.clear(), faces.clear();
+      find_missing(edges, faces);
+      std::erase_if(edges, [&](Index e) { return s_.chain.count(e) > 0; });
+    }
+    if (way_ == Way::backward)
       std::reverse(edges.begin(), edges.end()), std::reverse(faces.begin(), faces.end());
     FrontEdges by_edge(c_, s_);
     FrontFaces by_face(c_, s_);
@@ -74,7 +85,7 @@ class FrontRecovery {
     for (int round = 0; round < flip_rounds; ++round)
       std::erase_if(faces, [&](Index f) { return by_face.recover(f, Means::flips); });
     for (const Index f : faces) by_face.recover(f, Means::points);
-    counts_.steiner = by_edge.steiner + by_face.steiner;
+    counts_.steiner += by_edge.steiner + by_face.steiner;
   }
 
   /// Marks the triangles that are faces already.
@@ -90,7 +101,7 @@ class FrontRecovery {
         const Index m = s_.triangle_of(c_.face(t, f));
         if (m < 0) continue;
         face_found[at(m)] = 1;
-        c_.mark_both(4 * t + f, m);
+        c_.mark_both(4 * t + f, s_.triangles[at(m)], m);
       }
     }
     for (std::size_t e = 0; e < edge_found.size(); ++e)
@@ -121,10 +132,11 @@ class FrontRecovery {
       });
   }
 
-  static constexpr int flip_rounds = 3;
+  static constexpr int flip_rounds = 2;
+  static constexpr double most_flipped = 0.3;  // share of missing edges; beyond it flips run in circles
   TetComplex& c_;
   FrontSurface s_;
-  Order order_ = Order::forward;
+  Way way_ = Way::forward;
   RecoveryCounts counts_;
 };
 

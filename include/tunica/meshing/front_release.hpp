@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Steiner points leave the surface: each is moved inward, and the hole that opens between it and
-// the surface is closed by a fan over the triangulation without it. A short enough move always works.
+// Steiner points leave the surface: each is drawn into a neighbour on it, or moved inward, where the
+// hole that opens is closed by a fan over the triangulation without it: a short move always works.
 #pragma once
 
 #include "tunica/meshing/cavity_polygon.hpp"
@@ -22,14 +22,20 @@ class FrontRelease {
  public:
   FrontRelease(TetComplex& complex, FrontSurface& surface) : c_(complex), s_(surface) {}
 
-  /// Moves all Steiner points off, those on faces first. RecoveryFailure when one cannot move.
+  /// Takes all Steiner points off, those on faces first; one that cannot leave waits for its
+  /// neighbours. RecoveryFailure when none of the rest can.
   void run() {
-    std::vector<Index> nodes;
+    std::vector<Index> waiting;
     for (const auto& [node, owner] : s_.owners())
-      if (owner.face >= 0) nodes.push_back(node);
+      if (owner.face >= 0) waiting.push_back(node);
     for (const auto& [node, owner] : s_.owners())
-      if (owner.edge >= 0) nodes.push_back(node);
-    for (const Index node : nodes) release(node);
+      if (owner.edge >= 0) waiting.push_back(node);
+    while (!waiting.empty()) {
+      const std::size_t before = waiting.size();
+      std::erase_if(waiting, [&](Index node) { return release(node); });
+      if (waiting.size() == before)
+        throw RecoveryFailure{c_.point(waiting[0]), "a point cannot leave the surface"};
+    }
   }
 
  private:
@@ -46,9 +52,51 @@ class FrontRelease {
     std::vector<Index> nodes;
   };
 
-  void release(Index node) {
+  bool release(Index node) {
+    constexpr double good = 0.05, any = 0;
     const Vec3 origin = c_.point(node);
     find_loops(node, origin);
+    return contract(node, good) || move(node, origin) || contract(node, any);
+  }
+
+  /// Draws the point into a neighbour on the surface, on its edge if it has one.
+  bool contract(Index node, double floor) {
+    std::vector<Index> ends = loops_[0].nodes;
+    if (loops_.size() > 1) ends = {loops_[0].nodes.front(), loops_[0].nodes.back()};
+    double best = floor;
+    Index end = -1;
+    for (const Index w : ends) {
+      double least = 2;
+      for (const Index t : star_) {
+        if (c_.has(t, w)) continue;
+        const Triple f = c_.face(t, c_.local(t, node));
+        least = std::min(least, sine_quality(c_.point(f[0]), c_.point(f[2]), c_.point(f[1]), c_.point(w)));
+        if (least <= best) break;
+      }
+      if (least > best && least <= 1) best = least, end = w;
+    }
+    if (end < 0) return false;
+    fresh_.clear();
+    for (const Index t : star_) {
+      if (c_.has(t, end)) continue;
+      const Triple f = c_.face(t, c_.local(t, node));
+      fresh_.push_back({f[0], f[2], f[1], end});
+    }
+    c_.replace(star_, fresh_, open_);
+    c_.tet_of[at(node)] = -1;
+    for (const Side s : open_)
+      for (const Loop& loop : loops_) {
+        const Triple f = c_.face(s / 4, s % 4);
+        const auto in_loop = [&](Index n) {
+          return std::find(loop.nodes.begin(), loop.nodes.end(), n) != loop.nodes.end();
+        };
+        if (in_loop(f[0]) && in_loop(f[1]) && in_loop(f[2])) c_.set_mark(s, 2 * loop.face);
+      }
+    return true;
+  }
+
+  /// Moves the point inward, as far as the fans over its loops allow.
+  bool move(Index node, const Vec3& origin) {
     std::vector<Vec3> ways;
     Vec3 inward = Vec3::Zero(), middle = Vec3::Zero();
     double reach = 0;
@@ -71,10 +119,10 @@ class FrontRelease {
     double step = 1;
     for (int i = 0; i < halvings; ++i, step *= 0.5) {
       for (const Vec3& way : ways)
-        if (close(node, Vec3(origin + step * way))) return;
+        if (close(node, Vec3(origin + step * way))) return true;
     }
     c_.points[at(node)] = origin;
-    throw RecoveryFailure{origin, "a point cannot leave the surface"};
+    return false;
   }
 
   [[nodiscard]] Vec3 normal(Index f) const {
@@ -93,7 +141,7 @@ class FrontRelease {
         const Triple n = c_.face(t, f);
         std::size_t i = 0;
         while (n[i] != node) ++i;
-        next[c_.mark(t, f)][n[(i + 1) % 3]] = n[(i + 2) % 3];
+        next[c_.mark(t, f) / 2][n[(i + 1) % 3]] = n[(i + 2) % 3];
       }
     loops_.clear();
     for (auto& [face, steps] : next) {
@@ -112,7 +160,9 @@ class FrontRelease {
         n = it->second;
         if (n != start) loop.nodes.push_back(n);
       }
-      if (used != steps.size() || loop.nodes.size() < 3 || loop.nodes.size() > most_corners)
+      // Two nodes: on this triangle the point stands in a sliver beside its edge, which just closes.
+      const bool whole = loop.nodes.size() > (next.size() == 1 ? 2 : 1);
+      if (used != steps.size() || !whole || loop.nodes.size() > most_corners)
         throw RecoveryFailure{place, "the surface around a point is not a disc"};
       loops_.push_back(std::move(loop));
     }
@@ -131,6 +181,7 @@ class FrontRelease {
     faces_.clear();
     for (std::size_t l = 0; valid && l < loops_.size(); ++l) {
       const Loop& loop = loops_[l];
+      if (loop.nodes.size() == 2) continue;
       const auto quality = [&](int i, int k, int j) {
         return sine_quality(x, c_.point(loop.nodes[at(i)]), c_.point(loop.nodes[at(k)]),
                             c_.point(loop.nodes[at(j)]));
@@ -151,7 +202,7 @@ class FrontRelease {
       for (const auto& [tri, face] : faces_) {
         const Quad& n = c_.nodes(s / 4);
         if (n[at(s % 4)] == node && c_.has(s / 4, tri[0]) && c_.has(s / 4, tri[1]) && c_.has(s / 4, tri[2]))
-          c_.set_mark(s, face);
+          c_.set_mark(s, 2 * face);
       }
     return true;
   }

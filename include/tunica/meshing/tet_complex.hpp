@@ -37,13 +37,17 @@ class TetComplex {
   [[nodiscard]] const Quad& nodes(Index t) const { return tets_[at(t)].node; }
   [[nodiscard]] Side across(Index t, int face) const { return tets_[at(t)].next[at(face)]; }
   [[nodiscard]] Side across(Side s) const { return across(s / 4, s % 4); }
-  /// The triangle of the surface that this face is (a part of), -1: none.
+  /// Twice the triangle of the surface that this face is (a part of), plus one outside; -1: none.
   [[nodiscard]] Index mark(Index t, int face) const { return tets_[at(t)].mark[at(face)]; }
   void set_mark(Side s, Index m) { tets_[at(s / 4)].mark[at(s % 4)] = m; }
-  /// Marks the face on both of its sides.
-  void mark_both(Side s, Index m) {
-    set_mark(s, m);
-    if (across(s) >= 0) set_mark(across(s), m);
+  /// Marks the face on both of its sides as (a part of) triangle f, which turns as `oriented`:
+  /// 2 f on the side from which it does so seen from outside, that is inside, and 2 f + 1 beyond.
+  void mark_both(Side s, const Triple& oriented, Index f) {
+    Triple own = face(s / 4, s % 4);
+    while (own[0] != oriented[0]) std::rotate(own.begin(), own.begin() + 1, own.end());
+    const bool inner = own[1] == oriented[1];
+    set_mark(s, 2 * f + (inner ? 0 : 1));
+    if (across(s) >= 0) set_mark(across(s), 2 * f + (inner ? 1 : 0));
   }
 
   /// The nodes of a face, so that they turn counter-clockwise seen from outside of its tetrahedron.

@@ -197,7 +197,7 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
 
   FillResult result;
   detail::measure_surface(front, nodes, result.report);
-  constexpr int attempts = 4;  // other inner points each time, none at last
+  constexpr int attempts = 4;  // other inner points and another way each time; no inner points at last
   for (int attempt = 0;; ++attempt) {
     LatticeOptions lattice{.edge = options.lattice_edge, .clearance = options.clearance};
     lattice.shift = attempt * Vec3(0.37, 0.23, 0.11);
@@ -205,9 +205,10 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
     if (attempt + 1 < attempts) inner = Lattice(distances, size, lattice).points();
     TetComplex complex;
     try {
-      const RecoveryCounts counts = FrontRecovery::run(
-          complex, front, nodes, inner,
-          attempt % 2 == 0 ? FrontRecovery::Order::forward : FrontRecovery::Order::backward);
+      constexpr std::array ways{FrontRecovery::Way::forward, FrontRecovery::Way::halving,
+                                FrontRecovery::Way::backward, FrontRecovery::Way::halving};
+      const RecoveryCounts counts =
+          FrontRecovery::run(complex, front, nodes, inner, ways[static_cast<std::size_t>(attempt)]);
       result.report.missing_edges = counts.missing_edges;
       result.report.missing_faces = counts.missing_faces;
       result.report.steiner = counts.steiner;
