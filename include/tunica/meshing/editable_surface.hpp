@@ -186,8 +186,8 @@ class EditableSurface {
     return true;
   }
 
-  /// The surface as it is now, nodes in their order; regions from the facets.
-  [[nodiscard]] mesh::Surface surface(const Facets& facets, const std::vector<std::string>& names) const {
+  /// The surface as it is now, nodes in their order; its regions are the facets.
+  [[nodiscard]] mesh::Surface surface() const {
     mesh::Surface r;
     std::vector<Index> number(x_.size(), -1);
     Index count = 0, cells = 0;
@@ -201,10 +201,9 @@ class EditableSurface {
     for (Index t = 0; t < triangle_count(); ++t) {
       if (!alive(t)) continue;
       for (std::size_t k = 0; k < 3; ++k) r.cells(static_cast<Index>(k), to) = number[at(nodes(t)[k])];
-      r.region.push_back(facets.region[at(facet(t))]);
+      r.region.push_back(facet(t));
       ++to;
     }
-    r.region_names = names;
     return r;
   }
 

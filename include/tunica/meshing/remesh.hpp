@@ -63,8 +63,11 @@ class Remesher {
     for (int pass = 0; pass < 4; ++pass) fit();
     flip_to_angle(edit_);
     repair_angles();
-    mesh::Surface r = edit_.surface(facets_, source_.region_names);
+    mesh::Surface r = edit_.surface();  // labelled by facets: flat ones stay flat, also without regions
+    r.region_names.resize(facets_.region.size());
     restore_volume(r, mesh::enclosed_volume(source_), 0.1 * options_.edge);
+    for (Index& label : r.region) label = facets_.region[static_cast<std::size_t>(label)];
+    r.region_names = source_.region_names;
     report.left_out = edit_.left_out();
     report.kept_features = kept_features_;
     return r;
