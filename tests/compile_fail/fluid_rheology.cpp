@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SAYS: the required expression 'r.viscosity_at(shear_rate)' is invalid
+// SAYS: a fluid has a viscosity at a shear rate
 #include "tunica/fluid/projection.hpp"
 
 using namespace tunica;

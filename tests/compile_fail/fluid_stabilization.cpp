@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SAYS: the required expression 's.momentum(v, v, v, v, v)' is invalid
+// SAYS: it has a time for the momentum
 #include "tunica/fluid/projection.hpp"
 
 using namespace tunica;

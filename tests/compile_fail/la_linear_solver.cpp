@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SAYS: the required expression 'S::symmetric' is invalid
+// SAYS: a solver says whether it takes A for symmetric
 #include "tunica/la/newton.hpp"
 
 using namespace tunica;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SAYS: the required expression 'C::edges' is invalid
+// SAYS: a cell lists each edge once, from low to high node
 #include "tunica/mesh/mesh.hpp"
 
 /// A cell without its table of edges.

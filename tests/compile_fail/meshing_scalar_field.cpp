@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SAYS: { f(x) } -> std::convertible_to<double>;
+// SAYS: a field has a value at a point: f.value(x) or f(x)
 #include "tunica/meshing/scalar_field.hpp"
 
 using namespace tunica;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SAYS: 'size(x)' does not satisfy return-type-requirement
+// SAYS: a size field gives an edge length at a point
 #include "tunica/meshing/lattice.hpp"
 
 using namespace tunica;

@@ -17,7 +17,7 @@ concept Quadrature = mesh::Cell<typename Q::cell> && requires {
   { Q::degree } -> std::convertible_to<int>;
   { Q::size } -> std::convertible_to<int>;
   { Q::points[0] } -> std::convertible_to<LocalPoint<Q::cell::dim>>;
-  { Q::weights[0] } -> std::convertible_to<double>;
+  { Q::weights[0] } -> std::convertible_to<double>;  // a rule has a weight for each of its points
 };
 
 /// The rule of a cell for a degree: Tri3 1, 2, 4; Tet4 1, 2; Quad4 and Hex8 1, 3, 5.

@@ -20,8 +20,8 @@ using LocalPoint = std::array<double, Dim>;
 template <class S>
 concept Shape = mesh::Cell<typename S::cell> && requires(const LocalPoint<S::cell::dim>& xi) {
   { S::nodes } -> std::convertible_to<int>;
-  { S::values(xi) } -> std::same_as<std::array<double, S::nodes>>;
-  { S::gradients(xi) } -> std::same_as<std::array<LocalPoint<S::cell::dim>, S::nodes>>;
+  { S::values(xi) } -> std::same_as<std::array<double, S::nodes>>;  // a shape has values at a point
+  { S::gradients(xi) } -> std::same_as<std::array<LocalPoint<S::cell::dim>, S::nodes>>;  // and gradients
 };
 
 /// The isoparametric Lagrange functions of a cell.

@@ -15,7 +15,7 @@ namespace tunica::la {
 /// y = A x, matrix or not: apply(x, y). A RowMatrix is turned into one by ApplyMatrix.
 template <class A>
 concept LinearOperator = requires(const A& a, const Eigen::VectorXd& x, Eigen::VectorXd& y) {
-  a.apply(x, y);
+  a.apply(x, y);  // an operator applies itself to x: y = A x
 };
 
 /// z ~ A^-1 r: apply(r, z).

@@ -19,10 +19,10 @@ using SparseMatrix = Eigen::SparseMatrix<double>;  // compressed columns
 ///   struct Mine { static constexpr bool symmetric = true; void analyse(const SparseMatrix&); ... };
 template <class S, class Matrix = SparseMatrix>
 concept LinearSolver = requires(S solver, const Matrix& A, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
-  { S::symmetric } -> std::convertible_to<bool>;
-  solver.analyse(A);
-  { solver.factorise(A) } -> std::same_as<SolveReport>;
-  { solver.solve(b, x) } -> std::same_as<SolveReport>;
+  { S::symmetric } -> std::convertible_to<bool>;         // a solver says whether it takes A for symmetric
+  solver.analyse(A);                                     // a solver reads the pattern of A first
+  { solver.factorise(A) } -> std::same_as<SolveReport>;  // a solver reports on the values of A
+  { solver.solve(b, x) } -> std::same_as<SolveReport>;   // a solver reports on its solution
 };
 
 }  // namespace tunica::la

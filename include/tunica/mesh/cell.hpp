@@ -11,12 +11,12 @@ namespace tunica::mesh {
 ///   struct Line2 { static constexpr int dim = 1, nodes = 2, vtk_type = 3; ... };
 template <class C>
 concept Cell = requires {
-  { C::dim } -> std::convertible_to<int>;
-  { C::nodes } -> std::convertible_to<int>;
-  { C::vtk_type } -> std::convertible_to<int>;
-  typename C::Face;
-  C::faces;
-  C::edges;
+  { C::dim } -> std::convertible_to<int>;       // a cell states its dimension
+  { C::nodes } -> std::convertible_to<int>;     // a cell states how many nodes it has
+  { C::vtk_type } -> std::convertible_to<int>;  // a cell states its number in VTK
+  typename C::Face;                             // a cell names the cell that its faces are
+  C::faces;                                     // a cell lists its faces, outward
+  C::edges;                                     // a cell lists each edge once, from low to high node
 };
 
 struct Node1 {

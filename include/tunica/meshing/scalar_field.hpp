@@ -17,7 +17,7 @@ concept HasValue = requires(const F& f, const Vec3& x) {
 ///   auto ball = [](const Vec3& x) { return 1 - x.norm(); };
 template <class F>
 concept ScalarField = HasValue<F> || requires(const F& f, const Vec3& x) {
-  { f(x) } -> std::convertible_to<double>;
+  { f(x) } -> std::convertible_to<double>;  // a field has a value at a point: f.value(x) or f(x)
 };
 
 /// A field that knows its own gradient; others are differenced.

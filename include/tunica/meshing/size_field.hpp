@@ -18,7 +18,7 @@ namespace tunica::meshing {
 ///   [](const Vec3& x) { return 0.5 + 0.1 * x[2]; }
 template <class S>
 concept SizeField = requires(const S& size, const Vec3& x) {
-  { size(x) } -> std::convertible_to<double>;
+  { size(x) } -> std::convertible_to<double>;  // a size field gives an edge length at a point
 };
 
 /// Distance to a closed oriented surface, the side, and the size of its triangles, at any point.
