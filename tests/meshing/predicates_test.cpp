@@ -2,8 +2,8 @@
 // The signs of the predicates against integers of any length, on points that are nearly degenerate.
 #include "tunica/meshing/predicates.hpp"
 
-#include <Eigen/Geometry>
 #include <doctest/doctest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
