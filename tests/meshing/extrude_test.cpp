@@ -105,6 +105,22 @@ TEST_SUITE("unit") {
     }
   }
 
+  TEST_CASE("meshing: a wall may vary in thickness from place to place") {
+    const auto lumen = test::vessels::cylinder(4, 20, 96);
+    const Vec3 axis = test::vessels::tilt().col(2);
+    const auto thinning = [&](const Vec3& x) { return 1.2 - 0.02 * axis.dot(x); };
+    const auto result = meshing::vessel_wall(
+        lumen, meshing::WallOptions<decltype(thinning)>{.thickness = thinning, .edge = 0.5});
+    CHECK(result.report.extrusion.quality.inverted == 0);
+    CHECK(result.report.extrusion.thinned == 0);
+    MESSAGE("varying thickness: faces off by at most " << result.report.extrusion.deviation_max << " of it");
+    CHECK(result.report.extrusion.deviation_max < 2e-3);
+    for (Index n = 0; n < result.inner.node_count(); ++n) {
+      const Vec3 x = result.inner.nodes.col(n), out = result.wall.nodes.col(n + result.inner.node_count());
+      CHECK((out - x).norm() == doctest::Approx(thinning(x)).epsilon(0.02));
+    }
+  }
+
   TEST_CASE("meshing: extrusion in a sharp groove gives way and stays positive") {
     // A V of two planes, 40 degrees between them, folded along a line and extruded into the groove.
     const int n = 12;

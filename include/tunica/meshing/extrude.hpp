@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hex8 layers by extruding a sheet of quadrilaterals outward: uniform thickness measured normal to the
-// faces, flat ends, no inverted cell. Where the sheet folds too sharply the thickness gives way.
+// Hex8 layers by extruding a sheet of quadrilaterals outward: the thickness asked for measured normal to
+// the faces, flat ends, no inverted cell. Where the sheet folds too sharply the thickness gives way.
 #pragma once
 
 #include "tunica/core/error.hpp"
@@ -62,11 +62,9 @@ inline void add_extruded_patches(mesh::HexMesh& mesh, const mesh::QuadSurface& s
         faces.insert(faces.end(), {a, b, b + nodes, a + nodes});
       }
     all.insert(all.end(), faces.begin(), faces.end());
-    ends.push_back({rim.name, Eigen::Map<const Connectivity<4>>(
-                                  faces.data(), 4, static_cast<Eigen::Index>(faces.size() / 4))});
+    ends.push_back({rim.name, vec::quads(faces)});
   }
-  mesh.patches.push_back(
-      {"ends", Eigen::Map<const Connectivity<4>>(all.data(), 4, static_cast<Eigen::Index>(all.size() / 4))});
+  mesh.patches.push_back({"ends", vec::quads(all)});
   for (auto& end : ends) mesh.patches.push_back(std::move(end));
 }
 
@@ -75,10 +73,11 @@ inline void add_extruded_patches(mesh::HexMesh& mesh, const mesh::QuadSurface& s
 /// Extrudes the sheet to the side of its normals. Patches "inner" (towards the lumen), "outer", "ends", then
 /// one with the name of each rim. MeshError where no direction sees all faces around a node: the sheet itself
 /// is folded there.
-[[nodiscard]] inline Extruded extrude(const mesh::QuadSurface& sheet, std::span<const SheetRim> rims,
-                                      const ExtrudeOptions& options) {
-  TUNICA_EXPECT(options.thickness > 0 && options.layers > 0, "an extrusion has a thickness and layers");
-  detail::ExtrudeField field(sheet, rims, options);
+template <Thickness T = double>
+[[nodiscard]] Extruded extrude(const mesh::QuadSurface& sheet, std::span<const SheetRim> rims,
+                               const ExtrudeOptions<T>& options) {
+  TUNICA_EXPECT(options.layers > 0, "an extrusion has layers");
+  detail::ExtrudeField<T> field(sheet, rims, options);
   field.solve();
 
   Extruded result;
@@ -87,8 +86,9 @@ inline void add_extruded_patches(mesh::HexMesh& mesh, const mesh::QuadSurface& s
   mesh.nodes.resize(3, nodes * (layers + 1));
   for (Index l = 0; l <= layers; ++l)
     for (Index n = 0; n < nodes; ++n)
-      vec::set_column(mesh.nodes, l * nodes + n,
-                      vec::column(sheet.nodes, n) + (static_cast<double>(l) / layers) * field.offset(n));
+      vec::set_column(
+          mesh.nodes, l * nodes + n,
+          vec::along(vec::column(sheet.nodes, n), static_cast<double>(l) / layers, field.offset(n)));
   mesh.cells.resize(8, quads * layers);
   for (Index l = 0; l < layers; ++l)
     for (Index q = 0; q < quads; ++q)
@@ -102,7 +102,7 @@ inline void add_extruded_patches(mesh::HexMesh& mesh, const mesh::QuadSurface& s
     if (share < report.least_share) report.least_share = share, report.thinnest = vec::column(sheet.nodes, n);
     if (share < 0.99) ++report.thinned, report.thinned_centre += vec::column(sheet.nodes, n);
   }
-  if (report.thinned > 0) report.thinned_centre /= report.thinned;
+  if (report.thinned > 0) report.thinned_centre = vec::scaled(1.0 / report.thinned, report.thinned_centre);
   Index faces = 0;
   for (Index q = 0; q < quads; ++q) {
     const auto deviation = field.deviation(q);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/expect.hpp"
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/quality.hpp"
@@ -11,6 +12,7 @@
 #include "tunica/meshing/quad_adjacency.hpp"
 #include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/surface_foot.hpp"
+#include "tunica/meshing/thickness.hpp"
 #include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
@@ -25,8 +27,9 @@
 
 namespace tunica::meshing {
 
+template <Thickness T = double>
 struct ExtrudeOptions {
-  double thickness;  // [unit of the nodes]
+  T thickness;  // [unit of the nodes]; a number, or a function of the place
   int layers = 1;
   double good_quality =
       0.3;          // scaled Jacobian below which directions are smoothed and the thickness gives way
@@ -43,21 +46,28 @@ struct SheetRim {
 
 namespace detail {
 
+template <Thickness T>
 class ExtrudeField {
  public:
-  ExtrudeField(const mesh::QuadSurface& sheet, std::span<const SheetRim> rims, const ExtrudeOptions& options)
+  ExtrudeField(const mesh::QuadSurface& sheet, std::span<const SheetRim> rims,
+               const ExtrudeOptions<T>& options)
       : sheet_(sheet),
         options_(options),
         around_(mesh::cells_of_nodes(sheet.cells, sheet.node_count())),
         neighbours_(quad_neighbours(sheet.cells, sheet.node_count())),
+        thickness_(count()),
         plane_(count(), Vec3::Zero()),
         direction_(count()),
         length_(count(), 0.0),
         share_(count(), 1.0) {
+    for (Index n = 0; n < sheet.node_count(); ++n) {
+      thickness_[at(n)] = thickness_at(options.thickness, node(n));
+      TUNICA_EXPECT(thickness_[at(n)] > 0, "a wall has a positive thickness everywhere");
+    }
     for (const SheetRim& rim : rims)
       for (const Index n : rim.loop) plane_[at(n)] = rim.normal;
     for (Index q = 0; q < sheet.cell_count(); ++q) {
-      const Vec3 n = vec::cross(x(q, 2) - x(q, 0), x(q, 3) - x(q, 1));
+      const Vec3 n = vec::cross(vec::minus(x(q, 2), x(q, 0)), vec::minus(x(q, 3), x(q, 1)));
       face_normal_.push_back(vec::unit(n));
     }
   }
@@ -78,7 +88,9 @@ class ExtrudeField {
   }
 
   /// From a node of the sheet to its outermost node.
-  [[nodiscard]] Vec3 offset(Index n) const { return share_[at(n)] * length_[at(n)] * direction_[at(n)]; }
+  [[nodiscard]] Vec3 offset(Index n) const {
+    return vec::scaled(share_[at(n)] * length_[at(n)], direction_[at(n)]);
+  }
   [[nodiscard]] double share(Index n) const { return share_[at(n)]; }
 
   /// Relative deviation of a face's thickness from that asked for; none where it gave way.
@@ -89,12 +101,18 @@ class ExtrudeField {
       if (share(n) < 1) return std::nullopt;
       sum += vec::dot(offset(n), face_normal_[at(q)]) / 4;
     }
-    return sum / options_.thickness - 1;
+    return sum / wanted(q) - 1;
   }
 
  private:
   [[nodiscard]] static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(sheet_.node_count()); }
+  /// The thickness asked for at the middle of a face.
+  [[nodiscard]] double wanted(Index q) const {
+    double sum = 0;
+    for (int k = 0; k < 4; ++k) sum += thickness_[at(sheet_.cells(k, q))] / 4;
+    return sum;
+  }
   [[nodiscard]] Vec3 x(Index q, int k) const { return node(sheet_.cells(k, q)); }
   [[nodiscard]] Vec3 node(Index n) const { return vec::column(sheet_.nodes, n); }
 
@@ -112,7 +130,8 @@ class ExtrudeField {
       normals.push_back(face_normal_[at(q)]);
       for (int k = 0; k < 4; ++k) {
         if (sheet_.cells(k, q) != n) continue;
-        const Vec3 c = vec::cross(x(q, (k + 1) % 4) - x(q, k), x(q, (k + 3) % 4) - x(q, k));
+        const Vec3 c =
+            vec::cross(vec::minus(x(q, (k + 1) % 4), x(q, k)), vec::minus(x(q, (k + 3) % 4), x(q, k)));
         normals.push_back(vec::unit(c));
       }
     }
@@ -121,7 +140,7 @@ class ExtrudeField {
 
   [[nodiscard]] Vec3 in_plane(Index n, const Vec3& direction) const {
     const Vec3& p = plane_[at(n)];
-    const Vec3 d = direction - p * vec::dot(p, direction);
+    const Vec3 d = vec::along(direction, -vec::dot(p, direction), p);
     if (!(vec::length(d) > 0.1)) fail(n);
     return vec::unit(d);
   }
@@ -136,7 +155,7 @@ class ExtrudeField {
         const double c = vec::dot(direction_[at(n)], face_normal_[at(q)]);
         sum += w * c, square += w * c * c;
       }
-    return square > 0 ? options_.thickness * sum / square : options_.thickness;
+    return square > 0 ? thickness_[at(n)] * sum / square : thickness_[at(n)];
   }
 
   /// A few damped steps towards the right thickness at the middle of every face.
@@ -149,12 +168,12 @@ class ExtrudeField {
           const Index n = sheet_.cells(k, q);
           sum += length_[at(n)] * vec::dot(direction_[at(n)], face_normal_[at(q)]) / 4;
         }
-        residual[at(q)] = options_.thickness - sum;
+        residual[at(q)] = wanted(q) - sum;
       }
       for (Index n = 0; n < sheet_.node_count(); ++n) {
         double sum = 0;
         for (const Index q : around_[n]) sum += residual[at(q)];
-        const double limit = 0.05 * options_.thickness;
+        const double limit = 0.05 * thickness_[at(n)];
         length_[at(n)] += std::clamp(sum / static_cast<double>(around_[n].size()), -limit, limit);
       }
     }
@@ -170,7 +189,7 @@ class ExtrudeField {
       const double cosine = sees(n, direction_[at(n)]);
       const auto free = [&](double share) {
         const double reach = share * length_[at(n)];
-        const Vec3 end = node(n) + reach * direction_[at(n)];
+        const Vec3 end = vec::along(node(n), reach, direction_[at(n)]);
         return finder.nearest(end).distance >= 0.97 * reach * cosine;
       };
       if (free(1)) continue;
@@ -214,7 +233,7 @@ class ExtrudeField {
   [[nodiscard]] Vec3 smoothed(Index n, const std::vector<Vec3>& directions) const {
     Vec3 mean = Vec3::Zero();
     for (const Index m : neighbours_[n]) mean += directions[at(m)];
-    return in_plane(n, directions[at(n)] + 0.5 * mean / static_cast<double>(neighbours_[n].size()));
+    return in_plane(n, vec::along(directions[at(n)], 0.5 / static_cast<double>(neighbours_[n].size()), mean));
   }
 
   /// The thickness changes by at most half the way between neighbours.
@@ -224,7 +243,7 @@ class ExtrudeField {
       for (Index n = 0; n < sheet_.node_count(); ++n)
         for (const Index m : neighbours_[n]) {
           const double way = vec::distance(node(n), node(m));
-          const double most = share_[at(m)] + 0.5 * way / options_.thickness;
+          const double most = share_[at(m)] + 0.5 * way / thickness_[at(n)];
           if (share_[at(n)] > most + 1e-12) share_[at(n)] = most, changed = true;
         }
     }
@@ -237,8 +256,8 @@ class ExtrudeField {
       mesh::HexCorners c;
       for (std::size_t k = 0; k < 4; ++k) {
         const Index n = sheet_.cells(static_cast<Eigen::Index>(k), q);
-        c[k] = node(n) + offset(n) * (static_cast<double>(l) / options_.layers);
-        c[k + 4] = node(n) + offset(n) * (static_cast<double>(l + 1) / options_.layers);
+        c[k] = vec::along(node(n), static_cast<double>(l) / options_.layers, offset(n));
+        c[k + 4] = vec::along(node(n), static_cast<double>(l + 1) / options_.layers, offset(n));
       }
       worst = std::min(worst, mesh::scaled_jacobian(c));
     }
@@ -249,7 +268,7 @@ class ExtrudeField {
   [[nodiscard]] double face_quality(Index q) const {
     double worst = 1;
     for (int k = 0; k < 4; ++k) {
-      const Vec3 u = x(q, (k + 1) % 4) - x(q, k), v = x(q, (k + 3) % 4) - x(q, k);
+      const Vec3 u = vec::minus(x(q, (k + 1) % 4), x(q, k)), v = vec::minus(x(q, (k + 3) % 4), x(q, k));
       worst = std::min(worst, vec::dot(vec::cross(u, v), direction_[at(sheet_.cells(k, q))]) /
                                   (vec::length(u) * vec::length(v)));
     }
@@ -282,9 +301,10 @@ class ExtrudeField {
   static constexpr int fanning_rounds = 8;
 
   const mesh::QuadSurface& sheet_;
-  const ExtrudeOptions& options_;
+  const ExtrudeOptions<T>& options_;
   mesh::Rows around_, neighbours_;
-  std::vector<Vec3> plane_;  // normal of the end's plane of a rim node, else zero
+  std::vector<double> thickness_;  // asked for
+  std::vector<Vec3> plane_;        // normal of the end's plane of a rim node, else zero
   std::vector<Vec3> direction_, face_normal_;
   std::vector<double> length_, share_;  // length before giving way, and what is left of it
 };

@@ -85,9 +85,8 @@ struct LineHit {
       }
   }
   std::sort(hits.begin(), hits.end(), [](const LineHit& p, const LineHit& q) {
-    return std::pair(p.line, p.at) != std::pair(q.line, q.at)
-               ? std::pair(p.line, p.at) < std::pair(q.line, q.at)
-               : p.triangle < q.triangle;
+    if (p.line != q.line) return p.line < q.line;
+    return p.at != q.at ? p.at < q.at : p.triangle < q.triangle;
   });
   return hits;
 }
@@ -137,7 +136,9 @@ struct LineHit {
   Box box;
   for (Index n = 0; n < surface.node_count(); ++n) box.extend(vec::column(surface.nodes, n));
   const auto flat = cap_planes(surface);
-  const auto normals = region_vertex_normals(surface);
+  std::vector<std::vector<Vec3>> normals(flat.size());  // of the curved regions
+  for (std::size_t r = 0; r < flat.size(); ++r)
+    if (!flat[r]) normals[r] = vertex_normals(surface, static_cast<Index>(r));
   for (int attempt = 0; attempt < options.attempts; ++attempt) {
     HermiteGrid grid;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -166,8 +167,10 @@ struct LineHit {
       Crossing x{Vec3::Zero(), Vec3::Zero(), region};
       for (int k = 0; k < 3; ++k) {
         const Index n = surface.cells(k, hit->triangle);
-        x.point += hit->weights[k] * vec::column(surface.nodes, n);
-        x.normal += hit->weights[k] * normals.of(region, n);
+        x.point = vec::along(x.point, hit->weights[k], vec::column(surface.nodes, n));
+        if (!flat[static_cast<std::size_t>(region)])
+          x.normal = vec::along(x.normal, hit->weights[k],
+                                normals[static_cast<std::size_t>(region)][static_cast<std::size_t>(n)]);
       }
       const auto along = static_cast<Eigen::Index>(edge % 3);
       const std::size_t low = edge / 3;

@@ -16,8 +16,9 @@ namespace tunica::meshing {
 
 /// Distances in the unit of the nodes, with the places where they are greatest.
 struct InterfaceDistance {
-  double quads_max = 0, quads_rms = 0;  // from points of the quadrilaterals to the wall
-  double wall_max = 0, wall_rms = 0;    // from nodes of the wall to the quadrilaterals
+  double quads_max = 0, quads_rms = 0;       // from points of the quadrilaterals to the wall
+  double wall_max = 0, wall_rms = 0;         // from nodes of the wall to the quadrilaterals
+  double quads_beyond = 0, wall_beyond = 0;  // share of them farther away than the tolerance
   Vec3 quads_place = Vec3::Zero(), wall_place = Vec3::Zero();
 };
 
@@ -25,7 +26,7 @@ struct InterfaceDistance {
 /// quadrilaterals, each cut into 4 x 4 smaller ones.
 [[nodiscard]] inline InterfaceDistance interface_distance(const mesh::QuadSurface& quads,
                                                           const mesh::Surface& lumen,
-                                                          const FootFinder& finder) {
+                                                          const FootFinder& finder, double tolerance) {
   constexpr int parts = 4;
   InterfaceDistance d;
   mesh::QuadSurface fine;
@@ -38,10 +39,11 @@ struct InterfaceDistance {
     for (int j = 0; j <= parts; ++j)
       for (int i = 0; i <= parts; ++i) {
         const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
-        const Vec3 p = (1 - v) * ((1 - u) * x(0) + u * x(1)) + v * ((1 - u) * x(3) + u * x(2));
+        const Vec3 p = vec::between(vec::between(x(0), x(1), u), vec::between(x(3), x(2), u), v);
         vec::set_column(fine.nodes, node++, p);
         const double away = finder.distance(p);
         d.quads_rms += away * away;
+        d.quads_beyond += away > tolerance ? 1 : 0;
         if (away > d.quads_max) d.quads_max = away, d.quads_place = p;
       }
     for (int j = 0; j < parts; ++j)
@@ -52,7 +54,7 @@ struct InterfaceDistance {
         ++cell;
       }
   }
-  d.quads_rms = node > 0 ? std::sqrt(d.quads_rms / node) : 0;
+  if (node > 0) d.quads_rms = std::sqrt(d.quads_rms / node), d.quads_beyond /= node;
 
   const mesh::Surface triangles = split_quads(fine);
   const FootFinder back(triangles);
@@ -66,9 +68,10 @@ struct InterfaceDistance {
     ++count;
     const double away = back.distance(vec::column(lumen.nodes, n));
     d.wall_rms += away * away;
+    d.wall_beyond += away > tolerance ? 1 : 0;
     if (away > d.wall_max) d.wall_max = away, d.wall_place = vec::column(lumen.nodes, n);
   }
-  d.wall_rms = count > 0 ? std::sqrt(d.wall_rms / count) : 0;
+  if (count > 0) d.wall_rms = std::sqrt(d.wall_rms / count), d.wall_beyond /= count;
   return d;
 }
 

@@ -27,16 +27,16 @@ struct MostNormal {
     if (!(size > 1e-12)) return;
     double cosine = std::numeric_limits<double>::infinity();
     for (const Vec3& n : normals) cosine = std::min(cosine, vec::dot(n, axis) / size);
-    if (cosine > best.cosine) best = {axis / size, cosine};
+    if (cosine > best.cosine) best = {vec::scaled(1 / size, axis), cosine};
   };
   for (std::size_t i = 0; i < normals.size(); ++i) {
     try_axis(normals[i]);
     for (std::size_t j = i + 1; j < normals.size(); ++j) {
-      try_axis(normals[i] + normals[j]);
+      try_axis(vec::along(normals[i], 1, normals[j]));
       for (std::size_t k = j + 1; k < normals.size(); ++k) {
         const Vec3 &a = normals[i], &b = normals[j], &c = normals[k];
-        const Vec3 axis = vec::cross(b - a, c - a);  // equally far from all three
-        try_axis(vec::dot(axis, a) < 0 ? Vec3(-axis) : axis);
+        const Vec3 axis = vec::cross(vec::minus(b, a), vec::minus(c, a));  // equally far from all three
+        try_axis(vec::scaled(vec::dot(axis, a) < 0 ? -1 : 1, axis));
       }
     }
   }

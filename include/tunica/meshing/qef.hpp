@@ -36,8 +36,10 @@ struct SymmetricEigen {
         const double arp = A(r, p), arq = A(r, q);
         A(r, p) = A(p, r) = c * arp - s * arq;
         A(r, q) = A(q, r) = s * arp + c * arq;
-        const Vec3 vp = vectors.col(p), vq = vectors.col(q);
-        vectors.col(p) = c * vp - s * vq, vectors.col(q) = s * vp + c * vq;
+        for (int i = 0; i < 3; ++i) {
+          const double vp = vectors(i, p), vq = vectors(i, q);
+          vectors(i, p) = c * vp - s * vq, vectors(i, q) = s * vp + c * vq;
+        }
       }
     }
     values = A.diagonal();

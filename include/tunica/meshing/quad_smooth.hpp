@@ -73,17 +73,26 @@ class QuadSmoother {
       const double before = score(n);
       if (before >= options.good_corner) continue;
       const Vec3 x = at(n), normal = normal_[static_cast<std::size_t>(n)];
-      const Vec3 to_mean = mean(n) - x;
+      const Vec3 to_mean = vec::minus(mean(n), x);
       double reach = std::numeric_limits<double>::infinity();
       for (const Index m : neighbours_[n]) reach = std::min(reach, vec::distance(at(m), x));
       const Vec3 aside = std::abs(normal[0]) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-      const Vec3 u = vec::unit(vec::cross(normal, aside)) * reach, v = vec::cross(normal, u);
-      const std::array<Vec3, 11> tries{to_mean,  0.5 * to_mean, 0.25 * to_mean, 0.2 * u,  -0.2 * u, 0.2 * v,
-                                       -0.2 * v, 0.05 * u,      -0.05 * u,      0.05 * v, -0.05 * v};
+      const Vec3 u = vec::scaled(reach, vec::unit(vec::cross(normal, aside))), v = vec::cross(normal, u);
+      const std::array<Vec3, 11> tries{to_mean,
+                                       vec::scaled(0.5, to_mean),
+                                       vec::scaled(0.25, to_mean),
+                                       vec::scaled(0.2, u),
+                                       vec::scaled(-0.2, u),
+                                       vec::scaled(0.2, v),
+                                       vec::scaled(-0.2, v),
+                                       vec::scaled(0.05, u),
+                                       vec::scaled(-0.05, u),
+                                       vec::scaled(0.05, v),
+                                       vec::scaled(-0.05, v)};
       double best = before;
       Vec3 best_x = x, best_n = normal;
       for (const Vec3& step : tries) {
-        place(n, x + step);
+        place(n, vec::along(x, 1, step));
         const double quality = score(n);
         if (quality > best + 1e-3)
           best = quality, best_x = at(n), best_n = normal_[static_cast<std::size_t>(n)];
@@ -124,9 +133,9 @@ class QuadSmoother {
     const auto probe = [&](const Vec3& x) { worst = std::max(worst, lumen_.distance(x)); };
     for (const Index q : around_[node]) {
       const auto x = [&](int k) { return at(wall_.cells(k % 4, q)); };
-      probe(0.25 * (x(0) + x(1) + x(2) + x(3)));
+      probe(vec::between(vec::between(x(0), x(2), 0.5), vec::between(x(1), x(3), 0.5), 0.5));
       for (int k = 0; k < 4; ++k)
-        if (wall_.cells(k, q) == node) probe(0.5 * (x(k) + x(k + 1)));
+        if (wall_.cells(k, q) == node) probe(vec::between(x(k), x(k + 1), 0.5));
     }
     return worst;
   }
@@ -140,7 +149,7 @@ class QuadSmoother {
     Vec3 sum = Vec3::Zero();
     for (const Index q : around_[n]) {
       const auto x = [&](int k) { return at(wall_.cells(k, q)); };
-      sum += vec::cross(x(2) - x(0), x(3) - x(1));
+      sum += vec::cross(vec::minus(x(2), x(0)), vec::minus(x(3), x(1)));
     }
     return vec::unit(sum);
   }
@@ -150,7 +159,7 @@ class QuadSmoother {
   [[nodiscard]] double corner(Index q, int k) const {
     const Index n = wall_.cells(k, q);
     const auto x = [&](int c) { return at(wall_.cells(c % 4, q)); };
-    const Vec3 u = x(k + 1) - x(k), v = x(k + 3) - x(k);
+    const Vec3 u = vec::minus(x(k + 1), x(k)), v = vec::minus(x(k + 3), x(k));
     const double a = vec::length(u), b = vec::length(v), size = a * b;
     const double slender = 2 * std::min(a, b) / std::max(a, b);
     return size > 0 ? vec::dot(vec::cross(u, v), sheet_normal(n)) / size * std::min(1.0, slender) : 0;
@@ -159,7 +168,7 @@ class QuadSmoother {
   [[nodiscard]] Vec3 mean(Index n) const {
     Vec3 sum = Vec3::Zero();
     for (const Index m : neighbours_[n]) sum += at(m);
-    return sum / static_cast<double>(neighbours_[n].size());
+    return vec::scaled(1 / static_cast<double>(neighbours_[n].size()), sum);
   }
 
   /// Marks the neighbours of marked nodes, so many times.
@@ -186,9 +195,9 @@ class QuadSmoother {
   }
 
   void place(Index n, Vec3 x) {
-    const Vec3 home = vec::column(home_, n), way = x - home;
+    const Vec3 home = vec::column(home_, n), way = vec::minus(x, home);
     const double reach = reach_[static_cast<std::size_t>(n)], far = vec::length(way);
-    if (far > reach) x = home + way * (reach / far);
+    if (far > reach) x = vec::along(home, reach / far, way);
     const Foot foot = lumen_.nearest_facing(x, normal_[static_cast<std::size_t>(n)]);
     vec::set_column(wall_.nodes, n, foot.point);
     normal_[static_cast<std::size_t>(n)] = foot.normal;
@@ -208,7 +217,7 @@ class QuadSmoother {
         Vec3 below = Vec3::Zero();
         for (const Index n : neighbours_[loop[i]])
           if (!fixed(n)) below += at(n), ++inner;
-        if (inner > 0) target += 0.5 * curve.way(target, curve.nearest(below / inner));
+        if (inner > 0) target += 0.5 * curve.way(target, curve.nearest(vec::scaled(1.0 / inner, below)));
         const double lo = curve.way(along[i], before), hi = curve.way(along[i], after);
         along[i] += std::clamp(curve.way(along[i], target), 0.5 * lo, 0.5 * hi);
         vec::set_column(wall_.nodes, loop[i], curve.at(along[i]));

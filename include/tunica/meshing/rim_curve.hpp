@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/cap_planes.hpp"
 #include "tunica/meshing/vec.hpp"
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,7 +25,7 @@ class RimCurve {
       : name_(std::move(name)), plane_(plane) {
     length_.push_back(0);
     for (const Vec3& x : points)
-      points_.push_back(x - plane.normal * vec::dot(plane.normal, x - plane.point));
+      points_.push_back(vec::along(x, -vec::dot(plane.normal, vec::minus(x, plane.point)), plane.normal));
     for (std::size_t i = 0; i < points.size(); ++i)
       length_.push_back(length_.back() + vec::distance(points_[(i + 1) % points.size()], points_[i]));
   }
@@ -39,9 +39,10 @@ class RimCurve {
     double best = std::numeric_limits<double>::infinity(), where = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Vec3 &a = points_[i], &b = points_[(i + 1) % points_.size()];
-      const double square = vec::dot(b - a, b - a);
-      const double t = square > 0 ? std::clamp(vec::dot(x - a, b - a) / square, 0.0, 1.0) : 0.0;
-      const double d = vec::distance(a + t * (b - a), x);
+      const double square = vec::dot(vec::minus(b, a), vec::minus(b, a));
+      const double t =
+          square > 0 ? std::clamp(vec::dot(vec::minus(x, a), vec::minus(b, a)) / square, 0.0, 1.0) : 0.0;
+      const double d = vec::distance(vec::between(a, b, t), x);
       if (d < best) best = d, where = length_[i] + t * (length_[i + 1] - length_[i]);
     }
     return wrapped(where);
@@ -54,7 +55,7 @@ class RimCurve {
     const auto i = std::min(static_cast<std::size_t>(above) - 1, points_.size() - 1);
     const double step = length_[i + 1] - length_[i];
     const double t = step > 0 ? (s - length_[i]) / step : 0;
-    return points_[i] + t * (points_[(i + 1) % points_.size()] - points_[i]);
+    return vec::between(points_[i], points_[(i + 1) % points_.size()], t);
   }
 
   /// The difference b - a along the shorter way round.
@@ -79,38 +80,60 @@ struct Rims {
   std::vector<Index> regions;
 };
 
+namespace detail {
+
+/// The wall's edges that a cap shares: for each node the next one as the wall runs, and the cap's region.
+struct RimEdges {
+  std::vector<Index> next, region;  // -1, 0: no rim leaves the node
+  std::vector<Index> count;         // of edges, by region
+};
+
+[[nodiscard]] inline RimEdges rim_edges(const mesh::Surface& surface, std::size_t regions) {
+  const mesh::Rows around = mesh::cells_of_nodes(surface.cells, surface.node_count());
+  RimEdges rim{std::vector<Index>(static_cast<std::size_t>(surface.node_count()), -1),
+               std::vector<Index>(static_cast<std::size_t>(surface.node_count()), 0),
+               std::vector<Index>(regions, 0)};
+  for (Index t = 0; t < surface.cell_count(); ++t) {
+    if (surface.region_of(t) != 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      const Index a = surface.cells(k, t), b = surface.cells((k + 1) % 3, t);
+      for (const Index other : around[a])
+        for (int j = 0; j < 3; ++j) {
+          if (surface.cells(j, other) != b || surface.cells((j + 1) % 3, other) != a) continue;
+          const Index region = surface.region_of(other);
+          if (region == 0) continue;
+          rim.next[static_cast<std::size_t>(a)] = b;
+          rim.region[static_cast<std::size_t>(a)] = region;
+          ++rim.count[static_cast<std::size_t>(region)];
+        }
+    }
+  }
+  return rim;
+}
+
+}  // namespace detail
+
 [[nodiscard]] inline Rims rims_of(const mesh::Surface& surface) {
-  std::map<std::pair<Index, Index>, Index> cap_edges;  // as the wall runs them
-  for (Index t = 0; t < surface.cell_count(); ++t)
-    if (surface.region_of(t) != 0)
-      for (int k = 0; k < 3; ++k)
-        cap_edges[{surface.cells((k + 1) % 3, t), surface.cells(k, t)}] = surface.region_of(t);
   const auto flat = cap_planes(surface);
-  std::vector<std::map<Index, Index>> next(flat.size());
-  for (Index t = 0; t < surface.cell_count(); ++t)
-    if (surface.region_of(t) == 0)
-      for (int k = 0; k < 3; ++k) {
-        const Index a = surface.cells(k, t), b = surface.cells((k + 1) % 3, t);
-        if (const auto cap = cap_edges.find({a, b}); cap != cap_edges.end())
-          next[static_cast<std::size_t>(cap->second)][a] = b;
-      }
+  const detail::RimEdges edges = detail::rim_edges(surface, flat.size());
   Rims rims;
   for (std::size_t r = 1; r < flat.size(); ++r) {
     const std::string name =
         r < surface.region_names.size() ? surface.region_names[r] : "region " + std::to_string(r);
-    if (!flat[r] && next[r].empty()) continue;  // a region without triangles
+    if (!flat[r] && edges.count[r] == 0) continue;  // a region without triangles
     if (!flat[r]) throw MeshError("the cap \"" + name + "\" is not flat: the wall cannot end in its plane");
     std::vector<Vec3> points;
-    if (!next[r].empty()) {
-      Index at = next[r].begin()->first;
-      do {
-        points.push_back(vec::column(surface.nodes, at));
-        const auto step = next[r].find(at);
-        if (step == next[r].end() || points.size() > next[r].size()) break;
-        at = step->second;
-      } while (at != next[r].begin()->first);
+    Index first = 0;
+    while (first < surface.node_count() &&
+           edges.region[static_cast<std::size_t>(first)] != static_cast<Index>(r))
+      ++first;
+    for (Index at = first; at < surface.node_count() && at >= 0;) {
+      if (edges.region[static_cast<std::size_t>(at)] != static_cast<Index>(r)) break;
+      points.push_back(vec::column(surface.nodes, at));
+      at = edges.next[static_cast<std::size_t>(at)];
+      if (at == first || static_cast<Index>(points.size()) > edges.count[r]) break;
     }
-    if (points.size() < 3 || points.size() != next[r].size())
+    if (points.size() < 3 || static_cast<Index>(points.size()) != edges.count[r])
       throw MeshError("the wall does not meet the cap \"" + name + "\" in one closed curve");
     rims.curves.emplace_back(name, *flat[r], points);
     rims.regions.push_back(static_cast<Index>(r));

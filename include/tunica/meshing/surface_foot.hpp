@@ -26,7 +26,7 @@ struct Foot {
 class FootFinder {
  public:
   explicit FootFinder(const mesh::Surface& surface, Index region = 0)
-      : surface_(surface), normals_(region_vertex_normals(surface)), region_(region) {
+      : surface_(surface), normals_(vertex_normals(surface, region)) {
     std::vector<Box> boxes;
     for (Index t = 0; t < surface.cell_count(); ++t) {
       if (surface.region_of(t) != region) continue;
@@ -62,7 +62,7 @@ class FootFinder {
   }
   [[nodiscard]] double squared(const Vec3& x, Index item) const {
     const auto t = triangle(item);
-    const Vec3 way = t.at(t.nearest(x)) - x;
+    const Vec3 way = vec::minus(t.at(t.nearest(x)), x);
     return vec::dot(way, way);
   }
   [[nodiscard]] Foot foot(const Vec3& x, const search::Nearest& found) const {
@@ -71,15 +71,15 @@ class FootFinder {
     const Vec3 weights = t.nearest(x);
     Vec3 n = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
-      n += weights[k] *
-           normals_.of(region_, surface_.cells(k, triangles_[static_cast<std::size_t>(found.item)]));
+      n = vec::along(n, weights[k],
+                     normals_[static_cast<std::size_t>(
+                         surface_.cells(k, triangles_[static_cast<std::size_t>(found.item)]))]);
     const Vec3 p = t.at(weights);
     return {p, vec::length(n) > 0 ? vec::unit(n) : vec::unit(t.area_vector()), vec::distance(p, x)};
   }
 
   const mesh::Surface& surface_;
-  RegionNormals normals_;
-  Index region_;
+  std::vector<Vec3> normals_;
   std::vector<Index> triangles_;
   search::Octree tree_;
 };

@@ -6,6 +6,8 @@
 #include "tunica/core/types.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace tunica::meshing::vec {
 
@@ -15,6 +17,37 @@ namespace tunica::meshing::vec {
 
 inline void set_column(Points<3>& points, Index n, const Vec3& x) {
   for (int a = 0; a < 3; ++a) points(a, n) = x[a];
+}
+
+[[nodiscard]] inline Points<3> columns(const std::vector<Vec3>& list) {
+  Points<3> points(3, static_cast<Eigen::Index>(list.size()));
+  for (std::size_t n = 0; n < list.size(); ++n) set_column(points, static_cast<Index>(n), list[n]);
+  return points;
+}
+
+/// Four node numbers a face, one after the other.
+[[nodiscard]] inline Connectivity<4> quads(const std::vector<Index>& list) {
+  Connectivity<4> faces(4, static_cast<Eigen::Index>(list.size() / 4));
+  for (std::size_t i = 0; i < list.size(); ++i) faces.data()[i] = list[i];
+  return faces;
+}
+
+[[nodiscard]] inline Vec3 minus(const Vec3& a, const Vec3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+/// a + s d
+[[nodiscard]] inline Vec3 along(const Vec3& a, double s, const Vec3& d) {
+  return {a[0] + s * d[0], a[1] + s * d[1], a[2] + s * d[2]};
+}
+
+[[nodiscard]] inline Vec3 scaled(double s, const Vec3& a) {
+  return {s * a[0], s * a[1], s * a[2]};
+}
+
+/// The point between a and b at the fraction t.
+[[nodiscard]] inline Vec3 between(const Vec3& a, const Vec3& b, double t) {
+  return {(1 - t) * a[0] + t * b[0], (1 - t) * a[1] + t * b[1], (1 - t) * a[2] + t * b[2]};
 }
 
 [[nodiscard]] inline double dot(const Vec3& a, const Vec3& b) {
@@ -30,7 +63,7 @@ inline void set_column(Points<3>& points, Index n, const Vec3& x) {
 }
 
 [[nodiscard]] inline double distance(const Vec3& a, const Vec3& b) {
-  return length({a[0] - b[0], a[1] - b[1], a[2] - b[2]});
+  return length(minus(a, b));
 }
 
 /// Of length 1; zero stays zero.

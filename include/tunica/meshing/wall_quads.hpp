@@ -215,9 +215,8 @@ class WallSelection {
     }
     count += m;
   }
-  wall.nodes = Eigen::Map<const Points<3>>(points.front().data(), 3, count);
-  wall.cells =
-      Eigen::Map<const Connectivity<4>>(cells.data(), 4, static_cast<Eigen::Index>(cells.size() / 4));
+  wall.nodes = vec::columns(points);
+  wall.cells = vec::quads(cells);
   for (std::size_t r = 0; r < rims.curves.size(); ++r) {
     wall.along.push_back(detail::spread_over(rims.curves[r], wall.nodes, wall.loops[r]));
     for (std::size_t i = 0; i < wall.loops[r].size(); ++i)
