@@ -8,11 +8,11 @@
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/quality.hpp"
+#include "tunica/meshing/extrude_options.hpp"
 #include "tunica/meshing/most_normal.hpp"
 #include "tunica/meshing/quad_adjacency.hpp"
 #include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/surface_foot.hpp"
-#include "tunica/meshing/thickness.hpp"
 #include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
@@ -26,23 +26,6 @@
 #include <vector>
 
 namespace tunica::meshing {
-
-template <Thickness T = double>
-struct ExtrudeOptions {
-  T thickness;  // [unit of the nodes]; a number, or a function of the place
-  int layers = 1;
-  double good_quality =
-      0.3;          // scaled Jacobian below which directions are smoothed and the thickness gives way
-  int rounds = 80;  // of giving way at most
-};
-
-/// The nodes of one end of the sheet, run with the sheet on its left; they stay in the plane with that
-/// normal.
-struct SheetRim {
-  std::string name;
-  Vec3 normal;
-  std::vector<Index> loop;
-};
 
 namespace detail {
 

@@ -24,9 +24,9 @@ struct InterfaceDistance {
 
 /// Bilinear points, 5 x 5 a quadrilateral, against region 0 of the lumen; its nodes against the
 /// quadrilaterals, each cut into 4 x 4 smaller ones.
-[[nodiscard]] inline InterfaceDistance interface_distance(const mesh::QuadSurface& quads,
-                                                          const mesh::Surface& lumen,
-                                                          const FootFinder& finder, double tolerance) {
+template <FootSurface S>
+[[nodiscard]] InterfaceDistance interface_distance(const mesh::QuadSurface& quads, const mesh::Surface& lumen,
+                                                   const S& finder, double tolerance) {
   constexpr int parts = 4;
   InterfaceDistance d;
   mesh::QuadSurface fine;

@@ -16,7 +16,8 @@ namespace tunica::meshing {
 
 /// Moves the nodes inside the rims along the normals until the mean distance of the faces around each is
 /// nought; no node goes farther than the limit [length].
-inline void fit_quads(WallQuads& wall, const FootFinder& surface, double limit) {
+template <FootSurface S>
+void fit_quads(WallQuads& wall, const S& surface, double limit) {
   constexpr int rounds = 4;
   const auto count = static_cast<Index>(wall.nodes.cols()), quads = static_cast<Index>(wall.cells.cols());
   const mesh::Rows around = mesh::cells_of_nodes(wall.cells, count);

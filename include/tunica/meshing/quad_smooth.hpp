@@ -32,9 +32,10 @@ struct QuadSmoothOptions {
 
 namespace detail {
 
+template <FootSurface S>
 class QuadSmoother {
  public:
-  QuadSmoother(WallQuads& wall, const FootFinder& lumen, const Rims& rims, double reach)
+  QuadSmoother(WallQuads& wall, const S& lumen, const Rims& rims, double reach)
       : wall_(wall),
         lumen_(lumen),
         rims_(rims),
@@ -227,7 +228,7 @@ class QuadSmoother {
   }
 
   WallQuads& wall_;
-  const FootFinder& lumen_;
+  const S& lumen_;
   const Rims& rims_;
   mesh::Rows around_, neighbours_;
   std::vector<char> fixed_, free_;
@@ -249,9 +250,10 @@ struct [[nodiscard]] QuadSmoothReport {
 };
 
 /// Slides the nodes on the surface, the rims on their curves; nodes end on the surface.
-inline QuadSmoothReport smooth_quads(WallQuads& wall, const FootFinder& lumen, const Rims& rims,
-                                     const QuadSmoothOptions& options = {}) {
-  detail::QuadSmoother smoother(wall, lumen, rims, options.reach);
+template <FootSurface S>
+QuadSmoothReport smooth_quads(WallQuads& wall, const S& lumen, const Rims& rims,
+                              const QuadSmoothOptions& options = {}) {
+  detail::QuadSmoother<S> smoother(wall, lumen, rims, options.reach);
   const auto worst = [&] {
     double least = 1;
     for (Index n = 0; n < static_cast<Index>(wall.nodes.cols()); ++n)

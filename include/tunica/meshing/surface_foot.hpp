@@ -10,6 +10,7 @@
 #include "tunica/search/octree.hpp"
 
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -20,6 +21,14 @@ namespace tunica::meshing {
 struct Foot {
   Vec3 point, normal;
   double distance = std::numeric_limits<double>::infinity();
+};
+
+/// What nodes can be slid on: triangles (FootFinder), or a surface known in closed form.
+template <class S>
+concept FootSurface = requires(const S& s, const Vec3& x) {
+  { s.nearest(x) } -> std::convertible_to<Foot>;
+  { s.nearest_facing(x, x) } -> std::convertible_to<Foot>;
+  { s.distance(x) } -> std::convertible_to<double>;
 };
 
 /// The triangles of one region of a surface, ready to be asked.
