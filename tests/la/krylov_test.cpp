@@ -2,6 +2,7 @@
 // Krylov solvers against a direct solution, with every preconditioner, and how they end in trouble.
 #include "tunica/la/bicgstab.hpp"
 #include "tunica/la/cg.hpp"
+#include "tunica/la/iterative.hpp"
 #include "tunica/la/preconditioner.hpp"
 
 #include <doctest/doctest.h>
@@ -124,6 +125,21 @@ TEST_SUITE("unit") {
     CHECK(ic.shift() > 0);
     Eigen::VectorXd x = Eigen::VectorXd::Zero(4);
     CHECK(bool(la::cg(la::ApplyMatrix<>{K}, ic, waves(4), x, {.tolerance = 1e-12})));
+  }
+
+  TEST_CASE_TEMPLATE("la: a krylov solver is a linear solver", S, la::Cg<>, la::BiCgStab<>) {
+    la::SparseMatrix A = grid_operator(8, S::symmetric ? 0.0 : 0.5);
+    const Eigen::VectorXd exact = waves(A.rows()), b = A * exact;
+    S solver(la::KrylovOptions{.tolerance = 1e-10});
+    solver.analyse(A);
+    REQUIRE(solver.factorise(A));
+    Eigen::VectorXd x;
+    const auto report = solver.solve(b, x);
+    CHECK(report.status == Status::converged);
+    CHECK((x - exact).norm() < 1e-8 * exact.norm());
+    CHECK(solver.solve(b, x).iterations == 0);  // x is the start
+    A.coeffRef(0, 0) = std::numeric_limits<double>::quiet_NaN();
+    CHECK(solver.factorise(A).status == Status::diverged);
   }
 
   TEST_CASE("la: a krylov solver says how it failed") {
