@@ -5,16 +5,15 @@
 
 #include "cli.hpp"
 #include "json.hpp"
-#include "progress.hpp"
+#include "mesh_figures.hpp"
+#include "stages.hpp"
 #include "tunica/image/components.hpp"
 #include "tunica/image/phantom.hpp"
 #include "tunica/image/sampling.hpp"
 #include "tunica/io/vtk_image.hpp"
-#include "tunica/mesh/quality.hpp"
 #include "tunica/mesh/topology.hpp"
 #include "tunica/meshing/cut.hpp"
 #include "tunica/meshing/dual_contouring.hpp"
-#include "tunica/meshing/handles.hpp"
 #include "tunica/meshing/hermite_field.hpp"
 #include "tunica/meshing/marching_cubes.hpp"
 #include "tunica/meshing/remesh.hpp"
@@ -23,9 +22,7 @@
 #include "tunica/meshing/tetrahedra.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
@@ -52,34 +49,6 @@ struct [[nodiscard]] ImageMeshes {
   mesh::Surface surface;  // closed; regions: wall, the cuts in their order, the borders of the image
   mesh::TetMesh tets;     // its nodes begin with those of the surface; empty with Fill::none
 };
-
-/// Time and progress of the stages of a program.
-class Stages {
- public:
-  explicit Stages(int count) : progress_(count) {}
-
-  template <class F>
-  decltype(auto) operator()(const std::string& name, F&& call) {
-    progress_.tell(done_++, name);
-    return watch_.time(name, std::forward<F>(call));
-  }
-  void finish(Json& report) {
-    progress_.tell(done_, "done");
-    for (const auto& [name, seconds] : watch_.stages()) report["seconds"][name] = seconds;
-  }
-  [[nodiscard]] Stopwatch& watch() { return watch_; }
-
- private:
-  Progress progress_;
-  Stopwatch watch_;
-  int done_ = 0;
-};
-
-/// Tells a warning on stderr and in the report.
-inline void warn(Json& report, const std::string& sentence) {
-  warn(sentence);
-  report["warnings"].push(sentence);
-}
 
 [[nodiscard]] inline meshing::Cut cut_of(const std::string& text) {
   const auto v = numbers_of<double>(text);
@@ -119,71 +88,6 @@ inline void add_image_options(Cli& cli, ImageOptions& o) {
                o.smooth = number_of<int>(text);
                if (o.smooth < 0) throw UsageError("must be 0 or more");
              });
-}
-
-/// Figures of a surface: size, topology with the place of each handle, quality, patches.
-[[nodiscard]] inline Json surface_figures(const mesh::Surface& s, const mesh::Topology& t) {
-  Json j;
-  j["nodes"] = s.node_count(), j["triangles"] = s.cell_count();
-  j["volume"] = mesh::enclosed_volume(s), j["area"] = mesh::area(s);
-  j["components"] = t.components.size(), j["genus"] = t.genus();
-  j["closed"] = t.closed();
-  const auto q = mesh::quality(s);
-  j["smallest_angle_degrees"] = q.angle.least, j["mean_ratio"] = q.mean_ratio.mean;
-  j["shortest_edge"] = q.shortest_edge, j["longest_edge"] = q.longest_edge;
-  for (std::size_t r = 0; r < s.region_names.size(); ++r) {
-    Json patch;
-    patch["patch"] = r, patch["name"] = s.region_names[r];
-    patch["area"] = mesh::area_of_region(s, static_cast<Index>(r));
-    j["patches"].push(std::move(patch));
-  }
-  return j;
-}
-
-/// "221.484, 150.293, 22.501".
-[[nodiscard]] inline std::string place_text(const Vec3& x) {
-  std::array<char, 100> text{};
-  std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g", x[0], x[1], x[2]);
-  return text.data();
-}
-
-/// Warns of handles and of cavities, with their places.
-inline void tell_topology(const mesh::Surface& s, const mesh::Topology& t, Json& report) {
-  report["handles"] = Json(std::vector<double>{});
-  if (t.genus() > 0)
-    for (const auto& h : meshing::handles(s, t)) {
-      warn(report, "the surface has a handle at (" + place_text(h.place) + "), its ring is " +
-                       image::number_text(h.length) + " long");
-      Json j;
-      j["place"] = h.place, j["length"] = h.length;
-      report["handles"].push(std::move(j));
-    }
-  for (const auto& c : t.components)
-    if (c.volume < 0)
-      warn(report, "there is a cavity of volume " + image::number_text(-c.volume) + " at (" +
-                       place_text(c.centre) + ")");
-}
-
-[[nodiscard]] inline Json fill_figures(const meshing::FillReport& r, const mesh::TetMesh& tets) {
-  const auto q = mesh::quality(tets);
-  Json j;
-  j["nodes"] = r.nodes, j["tetrahedra"] = r.tetrahedra, j["inverted"] = q.inverted;
-  j["volume"] = r.volume, j["volume_error"] = r.volume_error;
-  j["smallest_dihedral_degrees"] = r.min_dihedral, j["largest_dihedral_degrees"] = r.max_dihedral;
-  j["one_percent_dihedral_degrees"] = q.dihedral.quantile(0.01);
-  j["mean_ratio"] = r.mean_ratio, j["worst_place"] = q.worst_place;
-  j["surface_smallest_angle_degrees"] = r.surface_min_angle;
-  j["surface_smallest_dihedral_degrees"] = r.surface_min_dihedral;
-  return j;
-}
-
-[[nodiscard]] inline Json remesh_figures(const meshing::RemeshReport& r) {
-  Json j;
-  j["triangles"] = r.triangles, j["smallest_angle_degrees"] = r.smallest_angle;
-  j["volume_before"] = r.volume_before, j["volume_after"] = r.volume_after;
-  j["left_out_folds"] = r.left_out.folds, j["left_out_crossings"] = r.left_out.crosses;
-  j["kept_features"] = r.kept_features;
-  return j;
 }
 
 namespace detail {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "cli.hpp"
-#include "image_pipeline.hpp"
 #include "json.hpp"
+#include "stages.hpp"
 #include "tunica/io/atomic_file.hpp"
 
 #include <filesystem>

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 // surface_to_mesh: a closed STL surface from anywhere to tetrahedra.
+#include "cli.hpp"
 #include "flat_ends.hpp"
-#include "image_pipeline.hpp"
+#include "json.hpp"
+#include "mesh_figures.hpp"
 #include "output_files.hpp"
+#include "stages.hpp"
 #include "tunica/io/closed_surface.hpp"
 #include "tunica/io/vtp.hpp"
 #include "tunica/io/vtu.hpp"
+#include "tunica/meshing/remesh.hpp"
+#include "tunica/meshing/tetrahedra.hpp"
 
 #include <cmath>
 #include <string>

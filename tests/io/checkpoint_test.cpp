@@ -10,6 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <deque>
 #include <filesystem>
@@ -194,7 +196,11 @@ TEST_SUITE("unit") {
 
   TEST_CASE("io: killed at any moment a writer leaves its last checkpoint readable") {
     const auto path = folder() / "killed.ckpt";
+    const auto start = std::chrono::steady_clock::now();
     save(state(0, 20000), path);
+    const auto one =
+        std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start);
+    const std::uint64_t longest = std::max<std::uint64_t>(15000, 4 * static_cast<std::uint64_t>(one.count()));
     int last = 0, advanced = 0;
     for (std::uint64_t k = 0; k < 60; ++k) {
       const pid_t child = ::fork();
@@ -202,7 +208,7 @@ TEST_SUITE("unit") {
       if (child == 0) {
         for (int step = last + 1;; ++step) save(state(step, 20000), path);
       }
-      ::usleep(static_cast<useconds_t>(500 + image::splitmix64(k) % 15000));
+      ::usleep(static_cast<useconds_t>(500 + image::splitmix64(k) % longest));
       ::kill(child, SIGKILL);
       ::waitpid(child, nullptr, 0);
       const State s = load(path);

@@ -79,6 +79,16 @@ TEST_SUITE("unit") {
     CHECK(turned.flipped);
     CHECK(turned.notices.size() == 1);
     CHECK(mesh::enclosed_volume(turned.surface) > 0);
+    auto two = s;  // one beside it that is inside out, one within it that is a cavity
+    two.nodes.resize(3, 18);
+    two.nodes << s.nodes, (s.nodes.colwise() + Vec3(5, 0, 0)).eval(), 0.1 * s.nodes;
+    two.cells.resize(3, 24);
+    two.cells << s.cells, s.cells.array() + 6, s.cells.array() + 12;
+    for (const int block : {8, 16}) two.cells.block(0, block, 1, 8).swap(two.cells.block(1, block, 1, 8));
+    const auto parts = io::closed_surface("f.stl", io::parse_stl("f.stl", bytes_of(two)));
+    CHECK(parts.components == 3);
+    CHECK(parts.notices == std::vector<std::string>{"f.stl: 1 of its parts were inside out; turned"});
+    CHECK(mesh::enclosed_volume(parts.surface) == doctest::Approx((2 - 1e-3) * 4 / 3).epsilon(1e-6));
     auto bad = s;
     bad.nodes(0, 0) = 1e300;
     CHECK_THROWS_AS(bytes_of(bad), InputError);

@@ -167,8 +167,11 @@ TEST_SUITE("unit") {
     CHECK(has(dims("DIMENSIONS 2 2 2\nSPACING 1 0 1\n"), "spacing y is 0: cells have no volume"));
     CHECK(has(dims("DIMENSIONS 2 2 2\nSPACING 1 1 -1\n"), "spacing z is -1"));
     CHECK(has(dims("DIMENSIONS 2 2 2\nSPACING 1 1 nan\n"), "SPACING is not finite"));
-    CHECK(has(dims("DIMENSIONS 2 2 2\nORIGIN 1e300 0 0\nPOINT_DATA 8\n"), "spacing x is lost"));
+    CHECK(has(dims("DIMENSIONS 2 2 2\nORIGIN 1e300 0 0\nPOINT_DATA 8\nSCALARS s char\n1 2 3 4 5 6 7 8\n"),
+              "spacing x is lost"));
     CHECK(has(dims("POINT_DATA 8\n"), "before DIMENSIONS"));
+    CHECK(has(dims("DIMENSIONS 2147483647 1 1\nPOINT_DATA 2147483647\nSCALARS s char\n1"),
+              "room for at most 1"));
     CHECK(has(
         refusal(head + "BINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 1024 1024 1024\nPOINT_DATA 1073741824\n"
                        "SCALARS s double\nLOOKUP_TABLE default\nxxxx"),

@@ -9,6 +9,7 @@
 #include "tunica/mesh/measures.hpp"
 #include "tunica/mesh/topology.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -48,6 +49,29 @@ namespace detail {
   return "no edge";
 }
 
+/// Turns the parts that are inside out; one in the box of another may be a cavity and stays as it is.
+/// Returns how many were turned.
+[[nodiscard]] inline Index turn_outward(mesh::Surface& s, const mesh::Topology& t) {
+  std::vector<Box> box(t.components.size());
+  for (Index f = 0; f < s.cell_count(); ++f)
+    box[static_cast<std::size_t>(t.component_of[static_cast<std::size_t>(f)])].extend(
+        mesh::triangle(s, f).box());
+  Index turned = 0;
+  std::vector<char> turn(box.size(), 0);
+  for (std::size_t c = 0; c < box.size(); ++c) {
+    bool within = false;
+    for (std::size_t d = 0; d < box.size(); ++d)
+      within = within || (d != c && (box[d].lo.array() <= box[c].lo.array()).all() &&
+                          (box[c].hi.array() <= box[d].hi.array()).all());
+    turn[c] = !within && t.components[c].volume < 0;
+    turned += turn[c];
+  }
+  for (Index f = 0; f < s.cell_count(); ++f)
+    if (turn[static_cast<std::size_t>(t.component_of[static_cast<std::size_t>(f)])] != 0)
+      std::swap(s.cells(1, f), s.cells(2, f));
+  return turned;
+}
+
 }  // namespace detail
 
 /// Checks and, where it is certain, repairs: a surface that is inside out is turned, which a notice tells.
@@ -79,14 +103,14 @@ namespace detail {
   if (t.nonmanifold_nodes > 0)
     throw InputError(name + ": " + std::to_string(t.nonmanifold_nodes) +
                      " points where the surface touches itself");
-  const double volume = mesh::enclosed_volume(s);
-  if (!(std::abs(volume) > 0)) throw InputError(name + ": the surface encloses no volume");
-  out.flipped = volume < 0;
-  if (out.flipped) {
-    s.cells.row(1).swap(s.cells.row(2));
-    out.notices.push_back(name + ": the surface was inside out (signed volume " + image::number_text(volume) +
-                          "); it has been turned");
+  if (const Index n = detail::turn_outward(s, t); n > 0) {
+    out.flipped = true;
+    out.notices.push_back(
+        name + ": " +
+        (t.components.size() == 1 ? "the surface was" : std::to_string(n) + " of its parts were") +
+        " inside out; turned");
   }
+  if (!(std::abs(mesh::enclosed_volume(s)) > 0)) throw InputError(name + ": the surface encloses no volume");
   if (file.collapsed > 0)
     out.notices.push_back(name + ": " + std::to_string(file.collapsed) +
                           " facets with equal corners left out");

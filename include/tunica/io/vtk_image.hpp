@@ -58,6 +58,7 @@ class VtkImageParser {
       }
     }
     if (!found_) missing();
+    if (!rectilinear_) even_axes();  // last: an axis is only made where the file holds its samples
     result_.image.axes = std::move(axes_);
     return std::move(result_);
   }
@@ -139,7 +140,8 @@ class VtkImageParser {
 
   void section(const std::string& key) {
     if (voxels_ == 0) at().fail(key + " before DIMENSIONS");
-    if (axes_[0].empty() || axes_[1].empty() || axes_[2].empty()) even_axes(key);
+    if (rectilinear_ && (axes_[0].empty() || axes_[1].empty() || axes_[2].empty()))
+      at().fail(key + " before the coordinates of every axis");
     points_ = key == "POINT_DATA", cells_ = !points_;
     tuples_ = points_ ? voxels_ : 1;
     if (cells_)
@@ -152,8 +154,7 @@ class VtkImageParser {
     at().end_of_line();
   }
 
-  void even_axes(const std::string& key) {
-    if (rectilinear_) at().fail(key + " before the coordinates of every axis");
+  void even_axes() {
     const auto h = spacing_.value_or(std::array<double, 3>{1, 1, 1});
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t i = 0; i < size_[a]; ++i)
@@ -161,7 +162,8 @@ class VtkImageParser {
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t i = 1; i < size_[a]; ++i)
         if (!(axes_[a][i] > axes_[a][i - 1]) || !std::isfinite(axes_[a][i]))
-          at().fail("spacing " + std::string(1, "xyz"[a]) + " is lost in the size of the coordinates");
+          throw InputError(at().name() + ": spacing " + std::string(1, "xyz"[a]) +
+                           " is lost in the size of the coordinates");
   }
 
   [[nodiscard]] bool wanted(const std::string& name) const {

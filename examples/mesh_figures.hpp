@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// What a report says of surfaces and tetrahedra: size, topology with places, quality.
+#pragma once
+
+#include "cli.hpp"
+#include "json.hpp"
+#include "tunica/image/number_text.hpp"
+#include "tunica/mesh/quality.hpp"
+#include "tunica/mesh/topology.hpp"
+#include "tunica/meshing/handles.hpp"
+#include "tunica/meshing/remesh.hpp"
+#include "tunica/meshing/tetrahedra.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tunica::examples {
+
+/// Tells a warning on stderr and in the report.
+inline void warn(Json& report, const std::string& sentence) {
+  warn(sentence);
+  report["warnings"].push(sentence);
+}
+
+/// Figures of a surface: size, topology with the place of each handle, quality, patches.
+[[nodiscard]] inline Json surface_figures(const mesh::Surface& s, const mesh::Topology& t) {
+  Json j;
+  j["nodes"] = s.node_count(), j["triangles"] = s.cell_count();
+  j["volume"] = mesh::enclosed_volume(s), j["area"] = mesh::area(s);
+  j["components"] = t.components.size(), j["genus"] = t.genus();
+  j["closed"] = t.closed();
+  const auto q = mesh::quality(s);
+  j["smallest_angle_degrees"] = q.angle.least, j["mean_ratio"] = q.mean_ratio.mean;
+  j["shortest_edge"] = q.shortest_edge, j["longest_edge"] = q.longest_edge;
+  for (std::size_t r = 0; r < s.region_names.size(); ++r) {
+    Json patch;
+    patch["patch"] = r, patch["name"] = s.region_names[r];
+    patch["area"] = mesh::area_of_region(s, static_cast<Index>(r));
+    j["patches"].push(std::move(patch));
+  }
+  return j;
+}
+
+/// "221.484, 150.293, 22.501".
+[[nodiscard]] inline std::string place_text(const Vec3& x) {
+  std::array<char, 100> text{};
+  std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g", x[0], x[1], x[2]);
+  return text.data();
+}
+
+/// Warns of handles and of cavities, with their places.
+inline void tell_topology(const mesh::Surface& s, const mesh::Topology& t, Json& report) {
+  report["handles"] = Json(std::vector<double>{});
+  if (t.genus() > 0)
+    for (const auto& h : meshing::handles(s, t)) {
+      warn(report, "the surface has a handle at (" + place_text(h.place) + "), its ring is " +
+                       image::number_text(h.length) + " long");
+      Json j;
+      j["place"] = h.place, j["length"] = h.length;
+      report["handles"].push(std::move(j));
+    }
+  for (const auto& c : t.components)
+    if (c.volume < 0)
+      warn(report, "there is a cavity of volume " + image::number_text(-c.volume) + " at (" +
+                       place_text(c.centre) + ")");
+}
+
+[[nodiscard]] inline Json fill_figures(const meshing::FillReport& r, const mesh::TetMesh& tets) {
+  const auto q = mesh::quality(tets);
+  Json j;
+  j["nodes"] = r.nodes, j["tetrahedra"] = r.tetrahedra, j["inverted"] = q.inverted;
+  j["volume"] = r.volume, j["volume_error"] = r.volume_error;
+  j["smallest_dihedral_degrees"] = r.min_dihedral, j["largest_dihedral_degrees"] = r.max_dihedral;
+  j["one_percent_dihedral_degrees"] = q.dihedral.quantile(0.01);
+  j["mean_ratio"] = r.mean_ratio, j["worst_place"] = q.worst_place;
+  j["surface_smallest_angle_degrees"] = r.surface_min_angle;
+  j["surface_smallest_dihedral_degrees"] = r.surface_min_dihedral;
+  return j;
+}
+
+[[nodiscard]] inline Json remesh_figures(const meshing::RemeshReport& r) {
+  Json j;
+  j["triangles"] = r.triangles, j["smallest_angle_degrees"] = r.smallest_angle;
+  j["volume_before"] = r.volume_before, j["volume_after"] = r.volume_after;
+  j["left_out_folds"] = r.left_out.folds, j["left_out_crossings"] = r.left_out.crosses;
+  j["kept_features"] = r.kept_features;
+  return j;
+}
+
+}  // namespace tunica::examples
