@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/types.hpp"
+#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <array>
@@ -42,7 +43,7 @@ struct SymmetricEigen {
         }
       }
     }
-    values = A.diagonal();
+    values = Vec3(A(0, 0), A(1, 1), A(2, 2));
   }
 };
 
@@ -67,20 +68,22 @@ class Qef {
  public:
   void add(const Vec3& point, const Vec3& normal) {
     if (count_ == 0) origin_ = point;
-    const double d = normal.dot(point - origin_);
-    A_ += normal * normal.transpose();
-    b_ += d * normal;
+    const Vec3 p = vec::minus(point, origin_);
+    const double d = vec::dot(normal, p);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) A_(i, j) += normal[i] * normal[j];
+    b_ = vec::along(b_, d, normal);
     c_ += d * d;
-    sum_ += point - origin_;
+    sum_ = vec::along(sum_, 1, p);
     ++count_;
   }
 
   [[nodiscard]] int count() const { return count_; }
-  [[nodiscard]] Vec3 mass_point() const { return origin_ + sum_ / std::max(count_, 1); }
+  [[nodiscard]] Vec3 mass_point() const { return vec::along(origin_, 1.0 / std::max(count_, 1), sum_); }
 
   [[nodiscard]] double error(const Vec3& x) const {
-    const Vec3 y = x - origin_;
-    return std::max(0.0, y.dot(A_ * y) - 2 * y.dot(b_) + c_);
+    const Vec3 y = vec::minus(x, origin_);
+    return std::max(0.0, vec::dot(y, applied(y)) - 2 * vec::dot(y, b_) + c_);
   }
 
   /// The minimum that is nearest to the mass point (or to another centre).
@@ -95,9 +98,12 @@ class Qef {
   /// edges and corners of the box.
   [[nodiscard]] QefMinimum minimum_in(const Box& box, const QefOptions& options = {}) const {
     const double cut = options.cut * largest();
-    const Vec3 centre = mass_point().cwiseMax(box.lo).cwiseMin(box.hi);
+    Vec3 centre = mass_point();
+    for (int a = 0; a < 3; ++a) centre[a] = std::min(std::max(centre[a], box.lo[a]), box.hi[a]);
     const auto inside = [&](const Vec3& x) {
-      return (x.array() >= box.lo.array()).all() && (x.array() <= box.hi.array()).all();
+      for (int a = 0; a < 3; ++a)
+        if (!(x[a] >= box.lo[a] && x[a] <= box.hi[a])) return false;
+      return true;
     };
     QefMinimum best = about(centre, {0, 0, 0}, cut);
     if (inside(best.position)) return best;
@@ -116,22 +122,34 @@ class Qef {
   }
 
  private:
+  [[nodiscard]] Vec3 applied(const Vec3& y) const {
+    Vec3 z(0, 0, 0);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) z[i] += A_(i, j) * y[j];
+    return z;
+  }
+
   [[nodiscard]] double largest() const {
-    return std::sqrt(std::max(0.0, detail::SymmetricEigen(A_).values.maxCoeff()));
+    const Vec3 values = detail::SymmetricEigen(A_).values;
+    return std::sqrt(std::max({0.0, values[0], values[1], values[2]}));
   }
 
   /// Least norm step from the centre that minimises E with the held axes fixed.
   [[nodiscard]] QefMinimum about(const Vec3& centre, const std::array<int, 3>& held, double cut) const {
-    Vec3 r = b_ - A_ * (centre - origin_);
+    Vec3 r = vec::minus(b_, applied(vec::minus(centre, origin_)));
     Eigen::Matrix3d A = A_;
     for (int a = 0; a < 3; ++a)
-      if (held[static_cast<std::size_t>(a)] != 0) A.row(a).setZero(), A.col(a).setZero(), r[a] = 0;
+      if (held[static_cast<std::size_t>(a)] != 0) {
+        for (int i = 0; i < 3; ++i) A(a, i) = A(i, a) = 0;
+        r[a] = 0;
+      }
     const detail::SymmetricEigen eigen(A);
     QefMinimum best{centre, 0, 0};
     for (int i = 0; i < 3; ++i) {
       const double value = eigen.values[i];  // a singular value squared
       if (!(value > cut * cut) || !(value > 0)) continue;
-      best.position += eigen.vectors.col(i) * (eigen.vectors.col(i).dot(r) / value);
+      const Vec3 axis(eigen.vectors(0, i), eigen.vectors(1, i), eigen.vectors(2, i));
+      best.position = vec::along(best.position, vec::dot(axis, r) / value, axis);
       ++best.rank;
     }
     for (int a = 0; a < 3; ++a)
