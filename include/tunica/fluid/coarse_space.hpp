@@ -22,7 +22,8 @@ namespace tunica::fluid {
 class CoarseSpace {
  public:
   /// x: 3 x nodes, in a domain of that volume [m3]; later motions of the nodes do not matter.
-  CoarseSpace(const Points<3>& x, double volume) {
+  template <class Nodes>
+  CoarseSpace(const Nodes& x, double volume) {
     constexpr double nodes_a_cell = 200, most_functions = 600;
     const auto n = static_cast<double>(x.cols());
     const double H = std::cbrt(std::max(nodes_a_cell, 2 * n / most_functions) * volume / n);
@@ -100,9 +101,10 @@ class CoarseSpace {
   }
 
   /// z += Z (Z^T A Z)^-1 Z^T r; r zero at the prescribed nodes.
-  void add(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
+  template <class Vector>
+  void add(const Vector& r, Vector& z) const {
     if (!usable_) return;
-    Eigen::VectorXd coarse = Eigen::VectorXd::Zero(size_);
+    Vector coarse = Vector::Zero(size_);
     for (std::size_t i = 0; i < entries_.size(); ++i)
       for (const Entry& e : entries_[i]) coarse[e.function] += e.weight * r[static_cast<Eigen::Index>(i)];
     factors_.solveInPlace(coarse);

@@ -49,13 +49,14 @@ class InterfaceForce {
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
 
   /// 3 x nodes() [N]; x: 3 x nodes of the mesh, prescribed: pressures of the pressure patches (nodes).
-  template <Rheology R, Stabilization S>
-  [[nodiscard]] Points<3> evaluate(const Connectivity<4>& cells, const fem::P1Tets& tets, const R& fluid,
+  /// fields: ForceFields.
+  template <Rheology R, Stabilization S, class Tets, class Fields>
+  [[nodiscard]] Points<3> evaluate(const Connectivity<4>& cells, const Tets& tets, const R& fluid,
                                    const S& stabilization, const Conditions& conditions, const Points<3>& x,
-                                   const Eigen::VectorXd& prescribed, const ForceFields& fields) const {
+                                   const Eigen::VectorXd& prescribed, const Fields& fields) const {
     Points<3> force = Points<3>::Zero(3, static_cast<Eigen::Index>(nodes_.size()));
     for (const Index e : cells_) {
-      const fem::P1Tet& tet = tets[e];
+      const auto& tet = tets[e];
       const double V = tet.volume;
       const Eigen::Matrix<double, 3, 4> a = nodal<3>(fields.a, cells, e), u = nodal<3>(fields.u, cells, e);
       const ElementFlow flow = element_flow(fluid, stabilization, tet, a, u);
@@ -82,7 +83,7 @@ class InterfaceForce {
           1, {values[c.faces(0, rim.face)], values[c.faces(1, rim.face)], values[c.faces(2, rim.face)]});
       Vec3 viscous = Vec3::Zero();
       if (c.kind != Kind::pressure) {
-        const fem::P1Tet& tet = tets[rim.cell];
+        const auto& tet = tets[rim.cell];
         const Eigen::Matrix<double, 3, 4> u = nodal<3>(fields.u, cells, rim.cell);
         const ElementFlow flow =
             element_flow(fluid, stabilization, tet, nodal<3>(fields.a, cells, rim.cell), u);

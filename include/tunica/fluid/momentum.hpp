@@ -43,10 +43,9 @@ struct ElementFlow {
   double stabilisation;  // t_m rho^2 [kg s/m3]
 };
 
-template <Rheology R, Stabilization S>
-[[nodiscard]] ElementFlow element_flow(const R& fluid, const S& stabilization, const fem::P1Tet& tet,
-                                       const Eigen::Matrix<double, 3, 4>& a,
-                                       const Eigen::Matrix<double, 3, 4>& u) {
+template <Rheology R, Stabilization S, class Tet, class Nodal>
+[[nodiscard]] ElementFlow element_flow(const R& fluid, const S& stabilization, const Tet& tet, const Nodal& a,
+                                       const Nodal& u) {
   ElementFlow flow;
   flow.a = a.rowwise().mean();
   double shear = 0;
@@ -64,12 +63,12 @@ template <Rheology R, Stabilization S>
 }
 
 /// M_L^{-1} int N (a . grad) u: 3 x nodes [m/s2]; inverse_mass = 1 / M_L [1/m3].
-inline void smooth_convection(const Pattern& pattern, const Connectivity<4>& cells, const fem::P1Tets& tets,
-                              const Points<3>& a, const Points<3>& u, const Eigen::VectorXd& inverse_mass,
-                              Points<3>& out) {
+template <class Tets, class Field>
+void smooth_convection(const Pattern& pattern, const Connectivity<4>& cells, const Tets& tets, const Field& a,
+                       const Field& u, const Eigen::VectorXd& inverse_mass, Field& out) {
   out.setZero(3, u.cols());
   pattern.for_each_cell([&](Index e) {
-    const fem::P1Tet& tet = tets[e];
+    const auto& tet = tets[e];
     const Eigen::Matrix<double, 3, 4> ae = nodal<3>(a, cells, e);
     const Eigen::Matrix3d grad_u = nodal<3>(u, cells, e) * tet.grad.transpose() * (tet.volume / 20);
     const Vec3 sum = ae.rowwise().sum();
@@ -79,16 +78,16 @@ inline void smooth_convection(const Pattern& pattern, const Connectivity<4>& cel
 }
 
 /// (rho c0/dt M + C + mu K + S) u* = -rho M history + G p + f + R conv, without boundary terms.
-/// matrix: nodes x nodes, not symmetric; right: 3 x nodes [N].
-template <Rheology R, Stabilization S>
-void assemble_momentum(const Pattern& pattern, const Connectivity<4>& cells, const fem::P1Tets& tets,
-                       const R& fluid, const S& stabilization, const MomentumFields& fields,
-                       la::RowMatrix& matrix, Points<3>& right) {
+/// fields: MomentumFields. matrix: nodes x nodes, not symmetric; right: 3 x nodes [N].
+template <Rheology R, Stabilization S, class Tets, class Fields>
+void assemble_momentum(const Pattern& pattern, const Connectivity<4>& cells, const Tets& tets, const R& fluid,
+                       const S& stabilization, const Fields& fields, la::RowMatrix& matrix,
+                       Points<3>& right) {
   pattern.clear(matrix);
   right.setZero(3, fields.a.cols());
   const bool forced = fields.force.cols() > 0;
   pattern.for_each_cell([&](Index e) {
-    const fem::P1Tet& tet = tets[e];
+    const auto& tet = tets[e];
     const double V = tet.volume, rho = fluid.density;
     const Eigen::Matrix<double, 3, 4> a = nodal<3>(fields.a, cells, e);
     const ElementFlow flow = element_flow(fluid, stabilization, tet, a, nodal<3>(fields.u, cells, e));

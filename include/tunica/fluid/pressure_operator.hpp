@@ -30,7 +30,8 @@ class PressureOperator {
         projected_(3, pattern.node_count()) {}
 
   /// Refills everything for these elements; tau [m3 s/kg] a cell, gamma = dt / (rho c0) [m3 s/kg].
-  void assemble(const Pattern& pattern, const Connectivity<4>& cells, const fem::P1Tets& tets,
+  template <class Tets>
+  void assemble(const Pattern& pattern, const Connectivity<4>& cells, const Tets& tets,
                 const std::vector<double>& tau, double gamma, const std::vector<char>& prescribed) {
     forward_.setZero(), backward_.setZero(), lumped_.setZero();
     pattern.for_each_cell([&](Index e) {
@@ -59,14 +60,16 @@ class PressureOperator {
   }
 
   /// y = A x. Takes no account of prescribed values in x: the caller zeroes them, or wants their effect.
-  void apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+  template <class Vector>
+  void apply(const Vector& x, Vector& y) const {
     apply_all(x, y);
     for (Eigen::Index i = 0; i < y.size(); ++i)
       if (is_prescribed(static_cast<int>(i))) y[i] = 0;
   }
 
   /// y = A x with the rows of the prescribed nodes too.
-  void apply_all(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+  template <class Vector>
+  void apply_all(const Vector& x, Vector& y) const {
     const int *outer = preconditioning_.outerIndexPtr(), *inner = preconditioning_.innerIndexPtr();
     y.resize(x.size());
     parallel_chunks(x.size(), la::row_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {

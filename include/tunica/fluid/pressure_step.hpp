@@ -18,15 +18,20 @@
 
 namespace tunica::fluid {
 
+/// A template of its scalar, so that its parts cost the scenes that take a step and no reader of the header.
+template <class Scalar = double>
 class PressureStep {
+  using Vector = Eigen::VectorX<Scalar>;                   // nodes
+  using Field = Eigen::Matrix<Scalar, 3, Eigen::Dynamic>;  // 3 x nodes
+
  public:
-  PressureStep(const Pattern& pattern, const Points<3>& x, double volume)
+  PressureStep(const Pattern& pattern, const Field& x, double volume)
       : operator_(pattern), coarse_(x, volume) {}
 
   /// gamma L + T about the advecting velocity a; gamma = dt / (rho c0) [m3 s/kg].
   template <Rheology R, Stabilization S>
-  void assemble(const Domain& domain, const R& fluid, const S& stabilization, const Points<3>& a,
-                const Points<3>& u, double gamma) {
+  void assemble(const Domain& domain, const R& fluid, const S& stabilization, const Field& a, const Field& u,
+                double gamma) {
     gamma_ = gamma;
     tau_.resize(static_cast<std::size_t>(domain.cells.cols()));
     domain.pattern.for_each_cell([&](Index e) {
@@ -47,8 +52,8 @@ class PressureStep {
 
   /// A x = b with x prescribed (on entry, at the nodes with prescribed pressure); elsewhere guess starts
   /// it. Without any prescribed pressure the mean of x is zero, and b loses what no x can balance.
-  SolveReport solve(const Domain& domain, Eigen::VectorXd b, double round_off, const Eigen::VectorXd& guess,
-                    const la::KrylovOptions& options, Eigen::VectorXd& x) {
+  SolveReport solve(const Domain& domain, Vector b, double round_off, const Vector& guess,
+                    const la::KrylovOptions& options, Vector& x) {
     const auto& prescribed = domain.conditions.pressure_flags();
     operator_.apply(x, product_);
     round_off = std::max(round_off, la::norm(product_));
@@ -56,7 +61,7 @@ class PressureStep {
     start_ = guess;
     for (std::size_t i = 0; i < prescribed.size(); ++i)
       if (prescribed[i]) b[static_cast<Eigen::Index>(i)] = start_[static_cast<Eigen::Index>(i)] = 0;
-    const Eigen::VectorXd mass = domain.inverse_mass.cwiseInverse();
+    const Vector mass = domain.inverse_mass.cwiseInverse();
     const bool enclosed = !domain.conditions.any_pressure();
     if (enclosed) b -= (b.sum() / mass.sum()) * mass;
     la::KrylovOptions with_floor = options;
@@ -70,9 +75,8 @@ class PressureStep {
   /// From the predicted velocity u (3 x nodes) and the pressure p to those at the end of the pass.
   /// increment: the prescribed increments of p, 0 at the other nodes. force: [N/m3] or no columns.
   /// rotational: chi mu [Pa s]. u of the nodes with prescribed velocity stays.
-  SolveReport correct(const Domain& domain, const Points<3>& force, double rotational,
-                      la::KrylovOptions options, const Eigen::VectorXd& guess, Eigen::VectorXd increment,
-                      Points<3>& u, Eigen::VectorXd& p) {
+  SolveReport correct(const Domain& domain, const Field& force, double rotational, la::KrylovOptions options,
+                      const Vector& guess, Vector increment, Field& u, Vector& p) {
     divergence(domain, u);
     stabilise(domain, p, force);
     if (!domain.conditions.any_pressure() && leaks(domain, u)) return {Status::diverged, 0, 1};
@@ -103,7 +107,7 @@ class PressureStep {
   }
 
   /// Fluxes after correct(): u at the end of the step, w of the grid (3 x nodes).
-  [[nodiscard]] MassBalance balance(const Domain& domain, const Points<3>& u, const Points<3>& w) const {
+  [[nodiscard]] MassBalance balance(const Domain& domain, const Field& u, const Field& w) const {
     MassBalance mass;
     std::vector<char> seen(static_cast<std::size_t>(u.cols()), 0);
     for (std::size_t k = 0; k < predicted_flux_.size(); ++k) {
@@ -126,7 +130,7 @@ class PressureStep {
   struct TwoLevel {
     const la::IncompleteCholesky& fine;
     const CoarseSpace& coarse;
-    void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const { fine.apply(r, z), coarse.add(r, z); }
+    void apply(const Vector& r, Vector& z) const { fine.apply(r, z), coarse.add(r, z); }
   };
 
   void prepare(const Domain& domain) {
@@ -138,20 +142,20 @@ class PressureStep {
   }
 
   /// divergence_ = int N div u.
-  void divergence(const Domain& domain, const Points<3>& u) {
+  void divergence(const Domain& domain, const Field& u) {
     divergence_.setZero(u.cols());
     domain.pattern.for_each_cell([&](Index e) {
-      const fem::P1Tet& tet = domain.tets[e];
+      const auto& tet = domain.tets[e];
       const double q = tet.volume / 4 * nodal<3>(u, domain.cells, e).cwiseProduct(tet.grad).sum();
       for (int i = 0; i < 4; ++i) divergence_[domain.cells(i, e)] += q;
     });
   }
 
   /// gradient_ = int N grad p, laplacian_ = (grad N, grad p).
-  void gradient(const Domain& domain, const Eigen::VectorXd& p) {
+  void gradient(const Domain& domain, const Vector& p) {
     gradient_.setZero(3, p.size()), laplacian_.setZero(p.size());
     domain.pattern.for_each_cell([&](Index e) {
-      const fem::P1Tet& tet = domain.tets[e];
+      const auto& tet = domain.tets[e];
       const Vec3 g = tet.volume * (tet.grad * nodal(p, domain.cells, e));
       for (int i = 0; i < 4; ++i) {
         gradient_.col(domain.cells(i, e)) += g / 4;
@@ -161,7 +165,7 @@ class PressureStep {
   }
 
   /// stabilised_ = int tau grad N . (r - P r), r = grad p - force.
-  void stabilise(const Domain& domain, const Eigen::VectorXd& p, const Points<3>& force) {
+  void stabilise(const Domain& domain, const Vector& p, const Field& force) {
     const auto residual = [&](Index e) -> Vec3 {
       Vec3 r = domain.tets[e].grad * nodal(p, domain.cells, e);
       if (force.cols() > 0) r -= nodal<3>(force, domain.cells, e).rowwise().mean();
@@ -182,13 +186,13 @@ class PressureStep {
   }
 
   /// Without prescribed pressure what flows in must flow out, up to the error of the boundary data.
-  [[nodiscard]] bool leaks(const Domain& domain, const Points<3>& u) const {
+  [[nodiscard]] bool leaks(const Domain& domain, const Field& u) const {
     constexpr double tolerated = 0.05;  // nodal values of a smooth divergence-free field on a coarse mesh
     double through = 0;
     for (const Condition& c : domain.conditions.list())
       for (Eigen::Index f = 0; f < c.faces.cols(); ++f)
         through += std::abs(Conditions::flux(domain.position, c.faces.col(f), u));
-    const double round_off = 1e-8 * divergence_.lpNorm<1>();
+    const double round_off = 1e-8 * divergence_.template lpNorm<1>();
     return !(std::abs(divergence_.sum()) <= tolerated * through + round_off);
   }
 
@@ -197,8 +201,8 @@ class PressureStep {
   CoarseSpace coarse_;
   std::vector<double> tau_;  // [m3 s/kg] a cell
   double gamma_ = 0;         // dt / (rho c0) [m3 s/kg]
-  Eigen::VectorXd divergence_, stabilised_, right_, product_, start_, reaction_, laplacian_;
-  Points<3> gradient_;
+  Vector divergence_, stabilised_, right_, product_, start_, reaction_, laplacian_;
+  Field gradient_;
   std::vector<double> predicted_flux_;  // of u* through each patch [m3/s]
 };
 

@@ -209,9 +209,14 @@ class Projection {
     if (!interface_.nodes().empty()) {
       next_u_ = bdf.now * u_ + history_;
       a_ = u_ - w_;
-      state_.force = interface_.evaluate(
-          cells_, tets_, fluid_, stabilization_, conditions_, next_, prescribed_now_,
-          {.a = a_, .u = u_, .rate = next_u_, .p = p_, .force = force_, .smoothed = predictor_.smoothed()});
+      state_.force =
+          interface_.evaluate(cells_, tets_, fluid_, stabilization_, conditions_, next_, prescribed_now_,
+                              ForceFields{.a = a_,
+                                          .u = u_,
+                                          .rate = next_u_,
+                                          .p = p_,
+                                          .force = force_,
+                                          .smoothed = predictor_.smoothed()});
     }
     state_.velocity_old.swap(state_.velocity), state_.velocity = u_;
     state_.pressure_old.swap(state_.pressure), state_.pressure = p_;
@@ -282,7 +287,7 @@ class Projection {
 
   fem::P1Tets tets_;
   Eigen::VectorXd inverse_mass_;
-  PressureStep pressure_step_;
+  PressureStep<> pressure_step_;
   Predictor predictor_;
   Points<3> u_, a_, w_, next_u_, history_, force_;
   Eigen::VectorXd p_, prescribed_, prescribed_now_, increment_, guess_;

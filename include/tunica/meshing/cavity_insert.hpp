@@ -14,6 +14,24 @@
 
 namespace tunica::meshing {
 
+/// The tetrahedron that contains x, by a walk from t; -1 when it does not end (it may turn in circles
+/// where the tetrahedra are not Delaunay).
+[[nodiscard]] inline Index containing(const TetComplex& c, const Vec3& x, Index t) {
+  for (Index step = 0; step < c.size(); ++step) {
+    int f = 0;
+    for (int k = 0; k < 4; ++k, ++f) {
+      const int g = (k + step) % 4;  // another first face each time breaks circles
+      const Triple n = c.face(t, g);
+      if (orient3d(c.point(n[0]), c.point(n[1]), c.point(n[2]), x) <= 0) continue;
+      if (c.across(t, g) < 0) return -1;
+      t = c.across(t, g) / 4;
+      break;
+    }
+    if (f == 4) return t;
+  }
+  return -1;
+}
+
 class CavityInsert {
  public:
   CavityInsert(TetComplex& complex, const FrontSurface& surface) : c_(complex), s_(surface) {}

@@ -233,7 +233,7 @@ class FrontEdges {
     for (const double floor : {1e-3, 1e-6, 1e-10})
       for (const double at_segment : {0.5, 0.3, 0.7, 0.1, 0.9, 0.02, 0.98}) {
         const Vec3 x = c_.point(u) + at_segment * (c_.point(goal) - c_.point(u));
-        const std::array<Index, 1> seed{c_.containing(x, hit.tet)};
+        const std::array<Index, 1> seed{containing(c_, x, hit.tet)};
         if (seed[0] < 0) continue;
         if (const Index p = insert_.insert(x, seed, floor); p >= 0) return p;
       }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Isotropic remeshing to a target edge length [BOTSCH04]: split, collapse, flip, relax along the surface.
-// Rims and flat regions are kept, the volume is kept, and no edit may fold the surface or make it cross
-// itself.
+// Rims, flat regions and the volume are kept; no edit folds the surface or makes it cross itself.
 #pragma once
 
 #include "tunica/core/expect.hpp"
@@ -22,10 +21,9 @@
 namespace tunica::meshing {
 
 struct RemeshOptions {
-  double edge = 0;  // target length, in the unit of the surface
-  int passes = 8;   // of split, collapse, flip and relax
-  double sharp_angle =
-      180;  // edges whose triangles turn by more are kept too [degrees]; 180: only rims of regions
+  double edge = 0;           // target length, in the unit of the surface
+  int passes = 8;            // of split, collapse, flip and relax
+  double sharp_angle = 180;  // [degrees] edges that turn by more are kept too; 180: only rims of regions
 };
 
 struct RemeshReport {
@@ -52,12 +50,12 @@ class Remesher {
       split_long();
       collapse_short();
       flip_to_valence(edit_);
-      relax(1);
+      relax();
     }
     for (int pass = 0; pass < 4; ++pass) {
       flip_to_angle(edit_);
       repair_angles();
-      relax(1);
+      relax();
     }
     flip_to_angle(edit_);
     for (int pass = 0; pass < 4; ++pass) fit();
@@ -137,10 +135,9 @@ class Remesher {
     return tried(a, b, edit_.x(a)) || tried(b, a, edit_.x(b));
   }
 
-  void relax(int rounds) {
-    for (int r = 0; r < rounds; ++r)
-      for (Index n = 0; n < edit_.node_count(); ++n)
-        if (edit_.used(n)) relax_node(n);
+  void relax() {
+    for (Index n = 0; n < edit_.node_count(); ++n)
+      if (edit_.used(n)) relax_node(n);
   }
 
   /// Towards the mean of its neighbours, weighted by area, along the surface; on a rim along the rim.
@@ -167,8 +164,7 @@ class Remesher {
     if (!edit_.move(n, to)) (void)edit_.move(n, on_target(n, 0.5 * (to + edit_.x(n))));
   }
 
-  /// Triangles below `wanted`: their short edge is collapsed, or their corner moved to raise the worst angle
-  /// about it.
+  /// Triangles below `wanted`: a short edge is collapsed, or a corner moved to raise the worst angle there.
   void repair_angles() {
     constexpr double wanted = 0.44;  // [rad] 25 degrees
     std::vector<std::pair<double, Index>> bad;

@@ -172,24 +172,6 @@ class TetComplex {
     }
   }
 
-  /// The tetrahedron that contains x, by a walk from t; -1 when it does not end (it may turn in
-  /// circles where the tetrahedra are not Delaunay).
-  [[nodiscard]] Index containing(const Vec3& x, Index t) const {
-    for (Index step = 0; step < size(); ++step) {
-      int f = 0;
-      for (int k = 0; k < 4; ++k, ++f) {
-        const int g = (k + step) % 4;  // another first face each time breaks circles
-        const Triple n = face(t, g);
-        if (orient3d(point(n[0]), point(n[1]), point(n[2]), x) <= 0) continue;
-        if (across(t, g) < 0) return -1;
-        t = across(t, g) / 4;
-        break;
-      }
-      if (f == 4) return t;
-    }
-    return -1;
-  }
-
   /// A tetrahedron with the edge (a, b), -1: there is none.
   [[nodiscard]] Index tet_with(Index a, Index b, std::vector<Index>& scratch) {
     star(a, scratch);
