@@ -73,6 +73,9 @@ struct Figures {
     j["mass_residual"] = mass_residual;
     j["mass_defect"] = defect, j["mass_defect_last"] = last_defect, j["mass_defect_mean"] = mean_defect();
   }
+
+  /// The rows of the closing table.
+  void print() const;
 };
 
 /// One row of the closing table.
@@ -80,6 +83,17 @@ inline void row(const char* name, const char* format, auto... values) {
   std::printf("  %-22s ", name);
   std::printf(format, values...);
   std::printf("\n");
+}
+
+inline void Figures::print() const {
+  row("worst quality", "dihedral angle %.1f degrees, scaled Jacobian %.2f", dihedral, scaled_jacobian);
+  row("iterations per step", "%.1f mean, %d most, %d steps halved",
+      static_cast<double>(iterations) / std::max(1, steps), most_iterations, halvings);
+  row("peak displacement", "%.3f mm", displacement * 1e3);
+  row("peak wall stress", "%.1f kPa (von Mises)", von_mises * 1e-3);
+  row("peak velocity", "%.3f m/s", speed);
+  row("mass residual", "%.1e of the inflow", mass_residual);
+  row("mass defect", "%.2f %% of the inflow at most, %.2f %% in the mean", defect * 100, mean_defect() * 100);
 }
 
 }  // namespace tunica::artery

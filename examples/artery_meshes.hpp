@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// The two meshes of artery_fsi in SI: tetrahedra of the lumen, hexahedra of the wall. [PEREZ08, 3]
+#pragma once
+
+#include "artery_options.hpp"
+#include "artery_scene.hpp"
+#include "image_pipeline.hpp"
+#include "json.hpp"
+#include "mesh_figures.hpp"
+#include "stages.hpp"
+#include "tunica/core/error.hpp"
+#include "tunica/fluid/conditions.hpp"
+#include "tunica/mesh/mesh.hpp"
+#include "tunica/meshing/vessel_wall.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+namespace tunica::artery {
+
+/// Patch 0 of the lumen is the wall, 1 the inlet, the others outlets; the wall has "inner" and "ends".
+struct Meshes {
+  mesh::TetMesh lumen;
+  mesh::HexMesh wall;
+};
+
+/// A number for a sentence: two decimals.
+[[nodiscard]] inline std::string rounded(double x) {
+  return image::number_text(std::round(x * 100) / 100);
+}
+
+/// Figures and warnings of the wall, in the unit of the image; MeshError where a cell is inverted.
+inline void tell_wall(const meshing::WallReport& wall, double edge, examples::Json& report) {
+  const auto& extrusion = wall.extrusion;
+  const auto& apart = wall.distance;
+  if (extrusion.quality.inverted > 0)
+    throw MeshError("the wall has " + std::to_string(extrusion.quality.inverted) +
+                    " inverted hexahedra: choose another --edge");
+  if (extrusion.thinned > 0)
+    warn(report["image_to_mesh"], "the wall gives way at " + std::to_string(extrusion.thinned) +
+                                      " nodes, down to " + rounded(100 * extrusion.least_share) +
+                                      " % of its thickness");
+  if (apart.wall_max > 0.1 * edge)
+    warn(report["image_to_mesh"], "lumen and wall are up to " + rounded(apart.wall_max) + " apart, at (" +
+                                      examples::place_text(apart.wall_place) + ")");
+  examples::Json& j = report["wall"];
+  j["smallest_scaled_jacobian"] = extrusion.quality.scaled_jacobian.least;
+  j["least_share_of_thickness"] = extrusion.least_share;
+  j["interfaces_apart"] = std::max(apart.wall_max, apart.quads_max);
+}
+
+/// Radius [m] of the disc with the area of a patch.
+[[nodiscard]] inline double radius(const mesh::TetMesh& lumen, const mesh::Patch<mesh::Tri3>& patch) {
+  double area = 0;
+  for (Eigen::Index f = 0; f < patch.faces.cols(); ++f)
+    area += fluid::Conditions::area_vector(lumen.nodes, patch.faces, f).norm();
+  return std::sqrt(area / std::numbers::pi);
+}
+
+[[nodiscard]] inline Meshes meshes(const Options& o, examples::Stages& stage, examples::Json& report) {
+  auto [surface, tets] = mesh_image(o.image, stage, report["image_to_mesh"]);
+  auto wall = stage("wall", [&] {
+    return meshing::vessel_wall(
+        surface, {.thickness = thickness / o.unit, .edge = o.wall_edge(), .layers = o.layers()});
+  });
+  report["wall"]["hexahedra"] = wall.wall.cell_count(), report["wall"]["nodes"] = wall.wall.node_count();
+  tell_wall(wall.report, o.wall_edge(), report);
+  tets.nodes *= o.unit;
+  wall.wall.nodes *= o.unit;
+  return {std::move(tets), std::move(wall.wall)};
+}
+
+}  // namespace tunica::artery
