@@ -35,7 +35,7 @@ void check_filling(const mesh::Surface& s, const mesh::TetMesh& m) {
   CHECK(m.nodes.leftCols(s.node_count()) == s.nodes);
   std::map<std::array<Index, 3>, std::array<Index, 3>> open;  // faces seen once, as they turn
   std::set<Index> used;
-  double volume = 0;
+  long double volume = 0;  // equal terms in double would all round to one side
   int inverted = 0, thrice = 0;
   std::set<std::array<Index, 3>> closed;
   for (Index t = 0; t < m.cell_count(); ++t) {
@@ -61,7 +61,7 @@ void check_filling(const mesh::Surface& s, const mesh::TetMesh& m) {
   CHECK(static_cast<Index>(used.size()) == m.node_count());
   CHECK(static_cast<Index>(open.size()) == s.cell_count());
   int lost = 0;
-  double bounded = 0;
+  long double bounded = 0;
   for (Index t = 0; t < s.cell_count(); ++t) {
     const std::array<Index, 3> tri{s.cells(0, t), s.cells(1, t), s.cells(2, t)};
     const auto it = open.find(sorted(tri));
@@ -76,7 +76,7 @@ void check_filling(const mesh::Surface& s, const mesh::TetMesh& m) {
     bounded += (a - s.nodes.col(0)).cross(b - s.nodes.col(0)).dot(c - s.nodes.col(0)) / 6;
   }
   CHECK(lost == 0);
-  CHECK(volume == doctest::Approx(bounded).epsilon(1e-12));
+  CHECK(static_cast<double>(std::abs(volume / bounded - 1)) < 1e-12);
   Eigen::Index patched = 0;
   for (const auto& p : m.patches) patched += p.faces.cols();
   CHECK(patched == s.cells.cols());
@@ -182,6 +182,22 @@ TEST_SUITE("unit") {
     MESSAGE("edge near the centre: asked 0.075, got " << edge_near_centre(fine.mesh) << "; asked 0.3, got "
                                                       << edge_near_centre(coarse.mesh));
     CHECK(edge_near_centre(coarse.mesh) > 2 * edge_near_centre(fine.mesh));
+  }
+
+  TEST_CASE("meshing: tetrahedra inside are as large as the triangles of the surface") {
+    // A regular tetrahedron has the volume edge^3 / (6 sqrt(2)).
+    for (const auto& s : {test::icosphere(4), test::torus(24, 80), test::tube_surface(24, 48, 6)}) {
+      double edge = 0;
+      for (Index t = 0; t < s.cell_count(); ++t)
+        for (int i = 0; i < 3; ++i)
+          edge += (s.nodes.col(s.cells(i, t)) - s.nodes.col(s.cells((i + 1) % 3, t))).norm();
+      edge /= 3.0 * s.cell_count();
+      const FillReport r = tetrahedra(s).report;
+      const double ratio = std::cbrt(6 * std::numbers::sqrt2 * r.volume / r.tetrahedra) / edge;
+      MESSAGE("edge of the regular tetrahedron of the mean volume over the edge of the surface: " << ratio);
+      CHECK(ratio > 0.9);
+      CHECK(ratio < 1.1);
+    }
   }
 
   TEST_CASE("meshing: tetrahedra have the same bits every time") {

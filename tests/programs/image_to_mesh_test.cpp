@@ -69,6 +69,19 @@ TEST_SUITE("job") {
     }
   }
 
+  TEST_CASE("image_to_mesh: the size of the coarse scene has about ten thousand tetrahedra") {
+    const auto image = shared("data/aorta_bifurcation.vtk");
+    if (!image || program("image_to_mesh").empty()) return;
+    const Folder folder;
+    const Run r = mesh(folder, *image, " --iso 1299.5" + seed + cuts + " --edge 2");
+    INFO(r.outcome.err);
+    REQUIRE(r.outcome.status == 0);
+    const double count = r({"fill", "tetrahedra"}), dihedral = r({"fill", "smallest_dihedral_degrees"});
+    MESSAGE("edge 2 mm: ", count, " tetrahedra, smallest dihedral angle ", dihedral, " degrees");
+    CHECK(std::abs(count - 10000) < 1000);
+    CHECK(dihedral >= 15);
+  }
+
   TEST_CASE("image_to_mesh: an iso-value that meets voxels gives no degenerate triangle") {
     const auto image = shared("data/aorta_bifurcation.vtk"), checker = shared("tools/check_mesh.py");
     if (!image || !checker || program("image_to_mesh").empty()) return;

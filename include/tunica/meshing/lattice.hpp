@@ -16,8 +16,8 @@
 namespace tunica::meshing {
 
 struct LatticeOptions {
-  double edge = 1.3;          // mean edge of the lattice over the local size h(x)
-  double clearance = 0.7;     // distance to the surface over the size of its triangles there
+  double edge = 1.0;          // mean edge of the lattice over the local size h(x)
+  double clearance = 0.5;     // distance to the surface over the larger of its triangles there and edge * h
   Vec3 shift = Vec3::Zero();  // of the origin, in lattice cells
 };
 
@@ -115,7 +115,7 @@ class Lattice {
   }
 
   [[nodiscard]] double clearance(double surface_size, const Vec3& x) const {
-    return options_.clearance * std::max(surface_size, size_(x) * options_.edge / 1.3);
+    return options_.clearance * std::max(surface_size, size_(x) * options_.edge);
   }
 
   const SurfaceSize& surface_;

@@ -29,8 +29,9 @@ namespace tunica::meshing {
 
 struct FillOptions {
   double growth = 0.0;        // of the size per distance from the surface, 0: as at the surface
-  double lattice_edge = 1.3;  // mean edge of the inner lattice over the size
-  double clearance = 0.7;     // of the lattice from the surface, over the size of its triangles
+  double lattice_edge = 1.0;  // mean edge of the inner lattice over the size; 1: inner tetrahedra as regular
+                              // ones on triangles of that size would be
+  double clearance = 0.5;     // of the lattice from the surface, over the size of its triangles
   double target_angle = 18;   // [degrees] dihedral angles below it (or above 180 minus it) are worked on
 };
 
