@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Kernel tier: contouring and smoothing of generated volumes. What counts for a user is the scene tier; these
-// tell where its time goes. The counter `rms_h` is the vertex error in edges of the grid.
+// Kernel tier: contouring, smoothing, remeshing and filling of generated volumes. What counts for a user is
+// the scene tier; these tell where its time goes. The counter `rms_h` is the vertex error in edges of the
+// grid.
 #include "support/work_cases.hpp"
 #include "tunica/meshing/marching_cubes.hpp"
+#include "tunica/meshing/remesh.hpp"
 #include "tunica/meshing/smooth.hpp"
+#include "tunica/meshing/tetrahedra.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -48,5 +51,36 @@ void smooth_20_sweeps(benchmark::State& state) {
   error_of(state, surface);
 }
 BENCHMARK(smooth_20_sweeps)->Arg(64)->Arg(128)->Unit(benchmark::kMillisecond);
+
+/// The smoothed bifurcation with triangles of one and a half edges of the grid.
+meshing::Remeshed remeshed(const mesh::Surface& smooth, benchmark::State& state) {
+  return meshing::remesh(smooth, {.edge = 1.5 / static_cast<double>(state.range(0) - 1)});
+}
+
+mesh::Surface smoothed(benchmark::State& state) {
+  auto surface = meshing::marching_cubes(bifurcation(state), 0).surface;
+  (void)meshing::smooth(surface, {.sweeps = 20});
+  return surface;
+}
+
+void remesh(benchmark::State& state) {
+  const auto surface = smoothed(state);
+  mesh::Surface result;
+  for (auto _ : state) benchmark::DoNotOptimize(result = remeshed(surface, state).surface);
+  state.SetItemsProcessed(state.iterations() * result.cell_count());
+  error_of(state, result);
+}
+BENCHMARK(remesh)->Arg(32)->Arg(64)->Unit(benchmark::kMillisecond);
+
+void fill(benchmark::State& state) {
+  const auto surface = remeshed(smoothed(state), state).surface;
+  meshing::FillReport report;
+  for (auto _ : state) benchmark::DoNotOptimize(report = meshing::tetrahedra(surface).report);
+  state.SetItemsProcessed(state.iterations() * report.tetrahedra);
+  state.counters["tetrahedra"] = report.tetrahedra;
+  state.counters["min_dihedral"] = report.min_dihedral;
+  state.counters["volume_error"] = report.volume_error;
+}
+BENCHMARK(fill)->Arg(32)->Arg(64)->Unit(benchmark::kMillisecond);
 
 }  // namespace
