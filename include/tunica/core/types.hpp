@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -25,19 +26,29 @@ using Connectivity = Eigen::Matrix<Index, Nodes, Eigen::Dynamic>;
 
 /// An axis-aligned box; empty until it is extended.
 struct Box {
-  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 hi = Vec3::Constant(-std::numeric_limits<double>::infinity());
+  static constexpr double far = std::numeric_limits<double>::infinity();
+  Vec3 lo{far, far, far}, hi{-far, -far, -far};
 
-  void extend(const Vec3& x) { lo = lo.cwiseMin(x), hi = hi.cwiseMax(x); }
-  void extend(const Box& b) { lo = lo.cwiseMin(b.lo), hi = hi.cwiseMax(b.hi); }
-  [[nodiscard]] Vec3 centre() const { return 0.5 * (lo + hi); }
-  [[nodiscard]] double diagonal() const { return (hi - lo).norm(); }
+  void extend(const Vec3& x) {
+    for (int a = 0; a < 3; ++a) lo[a] = x[a] < lo[a] ? x[a] : lo[a], hi[a] = x[a] > hi[a] ? x[a] : hi[a];
+  }
+  void extend(const Box& b) { extend(b.lo), extend(b.hi); }
+  [[nodiscard]] Vec3 centre() const {
+    return {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
+  }
+  [[nodiscard]] double diagonal() const {
+    const double x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
+    return std::sqrt(x * x + y * y + z * z);
+  }
   [[nodiscard]] bool overlaps(const Box& b) const {
-    return (lo.array() <= b.hi.array()).all() && (b.lo.array() <= hi.array()).all();
+    return lo[0] <= b.hi[0] && lo[1] <= b.hi[1] && lo[2] <= b.hi[2] &&  //
+           b.lo[0] <= hi[0] && b.lo[1] <= hi[1] && b.lo[2] <= hi[2];
   }
   /// Squared distance from x to the box, 0 inside.
   [[nodiscard]] double squared_distance(const Vec3& x) const {
-    return (lo - x).cwiseMax(x - hi).cwiseMax(0.0).squaredNorm();
+    const auto out = [&](int a) { return x[a] < lo[a] ? lo[a] - x[a] : x[a] > hi[a] ? x[a] - hi[a] : 0.0; };
+    const double d = out(0), e = out(1), f = out(2);
+    return d * d + e * e + f * f;
   }
 };
 

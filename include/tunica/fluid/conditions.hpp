@@ -7,6 +7,8 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/patch_nodes.hpp"
 
+#include <Eigen/Geometry>
+
 #include <cstddef>
 #include <string>
 #include <string_view>

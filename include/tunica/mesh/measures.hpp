@@ -2,6 +2,7 @@
 // Lengths, areas and volumes: V = 1/3 of the integral of x.n over the boundary (divergence theorem).
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/triangle.hpp"
 
@@ -11,20 +12,21 @@
 namespace tunica::mesh {
 
 [[nodiscard]] inline Triangle triangle(const Surface& s, Index t) {
-  return {s.nodes.col(s.cells(0, t)), s.nodes.col(s.cells(1, t)), s.nodes.col(s.cells(2, t))};
+  return {vec::column(s.nodes, s.cells(0, t)), vec::column(s.nodes, s.cells(1, t)),
+          vec::column(s.nodes, s.cells(2, t))};
 }
 
 /// Place of a node.
 [[nodiscard]] inline Vec3 node(const Surface& s, Index n) {
-  return s.nodes.col(n);
+  return vec::column(s.nodes, n);
 }
 
 template <int Dim>
 [[nodiscard]] Box bounding_box(const Points<Dim>& nodes) {
   Box box;
   for (Eigen::Index n = 0; n < nodes.cols(); ++n) {
-    Vec3 x = Vec3::Zero();
-    x.template head<Dim>() = nodes.col(n);
+    Vec3 x(0, 0, 0);
+    for (Eigen::Index a = 0; a < Dim; ++a) x[a] = nodes(a, n);
     box.extend(x);
   }
   return box;
@@ -45,14 +47,18 @@ template <int Dim>
   return sum;
 }
 
+/// Signed volume of the cone from o over a triangle: det(a-o, b-o, c-o)/6.
+[[nodiscard]] inline double cone_volume(const Triangle& f, const Vec3& o) {
+  return vec::dot(vec::minus(f.a, o), vec::cross(vec::minus(f.b, o), vec::minus(f.c, o))) / 6;
+}
+
 /// Volume that a closed surface encloses: positive where its normals point outward.
 /// V = sum det(a-o, b-o, c-o)/6; the origin o is the centre of the box, so that the sum does not cancel.
 [[nodiscard]] inline double enclosed_volume(const Surface& s) {
-  const Vec3 o = s.node_count() == 0 ? Vec3::Zero().eval() : bounding_box(s.nodes).centre();
+  const Vec3 o = s.node_count() == 0 ? Vec3(0, 0, 0) : bounding_box(s.nodes).centre();
   double sum = 0, carry = 0;  // compensated: drifts of 1e-12 are measured with it
   for (Index t = 0; t < s.cell_count(); ++t) {
-    const Triangle f = triangle(s, t);
-    const double term = (f.a - o).dot((f.b - o).cross(f.c - o)) / 6 - carry;
+    const double term = cone_volume(triangle(s, t), o) - carry;
     const double next = sum + term;
     carry = (next - sum) - term;
     sum = next;
@@ -62,14 +68,14 @@ template <int Dim>
 
 /// Signed volume of a tetrahedron: positive when d lies where the normal of (a, b, c) points.
 [[nodiscard]] inline double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  return (b - a).cross(c - a).dot(d - a) / 6;
+  return vec::dot(vec::cross(vec::minus(b, a), vec::minus(c, a)), vec::minus(d, a)) / 6;
 }
 
 [[nodiscard]] inline double volume(const TetMesh& m) {
   double sum = 0;
   for (Index t = 0; t < m.cell_count(); ++t)
-    sum += tet_volume(m.nodes.col(m.cells(0, t)), m.nodes.col(m.cells(1, t)), m.nodes.col(m.cells(2, t)),
-                      m.nodes.col(m.cells(3, t)));
+    sum += tet_volume(vec::column(m.nodes, m.cells(0, t)), vec::column(m.nodes, m.cells(1, t)),
+                      vec::column(m.nodes, m.cells(2, t)), vec::column(m.nodes, m.cells(3, t)));
   return sum;
 }
 
@@ -81,14 +87,15 @@ template <int Dim>
   double sum = 0;
   for (Index c = 0; c < m.cell_count(); ++c)
     for (const auto& p : corner) {
-      std::array<Vec3, 3> J{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // dx/dxi, dx/deta, dx/dzeta
+      Vec3 xi(0, 0, 0), eta(0, 0, 0), zeta(0, 0, 0);  // derivatives of x by the local coordinates
       for (std::size_t n = 0; n < 8; ++n) {
         const auto& q = corner[n];
         const double u = 1 + g * p[0] * q[0], v = 1 + g * p[1] * q[1], w = 1 + g * p[2] * q[2];
-        const Vec3 x = m.nodes.col(m.cells(static_cast<Eigen::Index>(n), c));
-        J[0] += (q[0] * v * w / 8) * x, J[1] += (u * q[1] * w / 8) * x, J[2] += (u * v * q[2] / 8) * x;
+        const Vec3 x = vec::column(m.nodes, m.cells(static_cast<Eigen::Index>(n), c));
+        xi = vec::along(xi, q[0] * v * w / 8, x), eta = vec::along(eta, u * q[1] * w / 8, x);
+        zeta = vec::along(zeta, u * v * q[2] / 8, x);
       }
-      sum += J[0].dot(J[1].cross(J[2]));
+      sum += vec::dot(xi, vec::cross(eta, zeta));
     }
   return sum;
 }

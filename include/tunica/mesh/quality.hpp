@@ -21,7 +21,8 @@ namespace tunica::mesh {
 
 /// Shape of a triangle, 4 sqrt(3) A / sum l^2: 1 equilateral, 0 degenerate.
 [[nodiscard]] inline double mean_ratio(const Triangle& t) {
-  const double l2 = (t.b - t.a).squaredNorm() + (t.c - t.b).squaredNorm() + (t.a - t.c).squaredNorm();
+  const double l2 = vec::squared(vec::minus(t.b, t.a)) + vec::squared(vec::minus(t.c, t.b)) +
+                    vec::squared(vec::minus(t.a, t.c));
   return l2 > 0 ? 4 * std::numbers::sqrt3 * t.area() / l2 : 0;
 }
 
@@ -29,13 +30,13 @@ using TetCorners = std::array<Vec3, 4>;
 using HexCorners = std::array<Vec3, 8>;
 
 [[nodiscard]] inline TetCorners corners(const TetMesh& m, Index c) {
-  return {m.nodes.col(m.cells(0, c)), m.nodes.col(m.cells(1, c)), m.nodes.col(m.cells(2, c)),
-          m.nodes.col(m.cells(3, c))};
+  return {vec::column(m.nodes, m.cells(0, c)), vec::column(m.nodes, m.cells(1, c)),
+          vec::column(m.nodes, m.cells(2, c)), vec::column(m.nodes, m.cells(3, c))};
 }
 
 [[nodiscard]] inline HexCorners corners(const HexMesh& m, Index c) {
   HexCorners x;
-  for (std::size_t n = 0; n < 8; ++n) x[n] = m.nodes.col(m.cells(static_cast<Eigen::Index>(n), c));
+  for (std::size_t n = 0; n < 8; ++n) x[n] = vec::column(m.nodes, m.cells(static_cast<Eigen::Index>(n), c));
   return x;
 }
 
@@ -46,14 +47,14 @@ using HexCorners = std::array<Vec3, 8>;
   for (std::size_t f = 0; f < 4; ++f) {
     const auto& v = Tet4::faces[f];
     const Vec3 &a = x[static_cast<std::size_t>(v[0])], &b = x[static_cast<std::size_t>(v[1])];
-    n[f] = (b - a).cross(x[static_cast<std::size_t>(v[2])] - a);
+    n[f] = vec::cross(vec::minus(b, a), vec::minus(x[static_cast<std::size_t>(v[2])], a));
   }
   std::array<double, 6> angle{};
   for (std::size_t e = 0; e < 6; ++e) {
     // the two faces that hold an edge are those opposite to the nodes of the opposite edge, number 5 - e
     const auto& far = Tet4::edges[5 - e];
     const Vec3 &p = n[static_cast<std::size_t>(far[0])], &q = n[static_cast<std::size_t>(far[1])];
-    angle[e] = std::numbers::pi - std::atan2(p.cross(q).norm(), p.dot(q));
+    angle[e] = std::numbers::pi - std::atan2(vec::length(vec::cross(p, q)), vec::dot(p, q));
   }
   return angle;
 }
@@ -62,7 +63,7 @@ using HexCorners = std::array<Vec3, 8>;
 [[nodiscard]] inline double mean_ratio(const TetCorners& x) {
   double l2 = 0;
   for (const auto& e : Tet4::edges)
-    l2 += (x[static_cast<std::size_t>(e[1])] - x[static_cast<std::size_t>(e[0])]).squaredNorm();
+    l2 += vec::squared(vec::minus(x[static_cast<std::size_t>(e[1])], x[static_cast<std::size_t>(e[0])]));
   const double c = std::cbrt(3 * tet_volume(x[0], x[1], x[2], x[3]));
   return l2 > 0 ? std::copysign(12 * c * c / l2, c) : 0;
 }
@@ -75,19 +76,22 @@ inline constexpr std::array<std::array<int, 3>, 8> hex_corner_axes{
 /// <= 0 inverted.
 [[nodiscard]] inline double scaled_jacobian(const HexCorners& x) {
   const auto scaled = [](const Vec3& u, const Vec3& v, const Vec3& w) {
-    const double l = u.norm() * v.norm() * w.norm();
-    return l > 0 ? u.cross(v).dot(w) / l : 0.0;
+    const double l = vec::length(u) * vec::length(v) * vec::length(w);
+    return l > 0 ? vec::dot(vec::cross(u, v), w) / l : 0.0;
   };
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < 8; ++c) {
-    const auto edge = [&](std::size_t a) -> Vec3 {
-      return x[static_cast<std::size_t>(hex_corner_axes[c][a])] - x[c];
+    const auto edge = [&](std::size_t a) {
+      return vec::minus(x[static_cast<std::size_t>(hex_corner_axes[c][a])], x[c]);
     };
     least = std::min(least, scaled(edge(0), edge(1), edge(2)));
   }
-  const Vec3 u = x[1] + x[2] + x[5] + x[6] - x[0] - x[3] - x[4] - x[7];
-  const Vec3 v = x[2] + x[3] + x[6] + x[7] - x[0] - x[1] - x[4] - x[5];
-  const Vec3 w = x[4] + x[5] + x[6] + x[7] - x[0] - x[1] - x[2] - x[3];
+  Vec3 u, v, w;  // through the centre
+  for (int a = 0; a < 3; ++a) {
+    u[a] = x[1][a] + x[2][a] + x[5][a] + x[6][a] - x[0][a] - x[3][a] - x[4][a] - x[7][a];
+    v[a] = x[2][a] + x[3][a] + x[6][a] + x[7][a] - x[0][a] - x[1][a] - x[4][a] - x[5][a];
+    w[a] = x[4][a] + x[5][a] + x[6][a] + x[7][a] - x[0][a] - x[1][a] - x[2][a] - x[3][a];
+  }
   return std::min(least, scaled(u, v, w));
 }
 
@@ -130,7 +134,7 @@ template <class Figure>
 struct [[nodiscard]] SurfaceQuality {
   Spread angle;                                // smallest angle of each triangle [degrees]
   Spread mean_ratio;                           // 1 equilateral
-  Vec3 worst_place = Vec3::Zero();             // centroid of the triangle with the smallest angle
+  Vec3 worst_place{0, 0, 0};                   // centroid of the triangle with the smallest angle
   double shortest_edge = 0, longest_edge = 0;  // in the unit of the nodes
 };
 
@@ -142,7 +146,7 @@ struct [[nodiscard]] SurfaceQuality {
   double lo = std::numeric_limits<double>::infinity(), hi = 0;
   for (Index t = 0; t < s.cell_count(); ++t)
     for (const auto& e : Tri3::edges) {
-      const double l2 = (s.nodes.col(s.cells(e[1], t)) - s.nodes.col(s.cells(e[0], t))).squaredNorm();
+      const double l2 = vec::squared(vec::minus(node(s, s.cells(e[1], t)), node(s, s.cells(e[0], t))));
       lo = std::min(lo, l2), hi = std::max(hi, l2);
     }
   if (hi > 0) q.shortest_edge = std::sqrt(lo), q.longest_edge = std::sqrt(hi);
@@ -150,11 +154,11 @@ struct [[nodiscard]] SurfaceQuality {
 }
 
 struct [[nodiscard]] TetQuality {
-  Spread dihedral;                  // smallest dihedral angle of each cell [degrees]
-  Spread mean_ratio;                // 1 regular, negative inverted
-  double largest_dihedral = 0;      // [degrees]
-  Index inverted = 0;               // cells with volume <= 0
-  Vec3 worst_place = Vec3::Zero();  // centroid of the cell with the smallest dihedral angle
+  Spread dihedral;              // smallest dihedral angle of each cell [degrees]
+  Spread mean_ratio;            // 1 regular, negative inverted
+  double largest_dihedral = 0;  // [degrees]
+  Index inverted = 0;           // cells with volume <= 0
+  Vec3 worst_place{0, 0, 0};    // centroid of the cell with the smallest dihedral angle
 };
 
 [[nodiscard]] inline TetQuality quality(const TetMesh& m) {
@@ -171,15 +175,15 @@ struct [[nodiscard]] TetQuality {
                          q.mean_ratio.sorted.begin());
   if (q.dihedral.worst_cell >= 0) {
     const TetCorners x = corners(m, q.dihedral.worst_cell);
-    q.worst_place = 0.25 * (x[0] + x[1] + x[2] + x[3]);
+    q.worst_place = vec::scaled(0.25, vec::plus(vec::plus(vec::plus(x[0], x[1]), x[2]), x[3]));
   }
   return q;
 }
 
 struct [[nodiscard]] HexQuality {
-  Spread scaled_jacobian;           // 1 brick, <= 0 inverted
-  Index inverted = 0;               // cells with scaled Jacobian <= 0
-  Vec3 worst_place = Vec3::Zero();  // centre of the worst cell
+  Spread scaled_jacobian;     // 1 brick, <= 0 inverted
+  Index inverted = 0;         // cells with scaled Jacobian <= 0
+  Vec3 worst_place{0, 0, 0};  // centre of the worst cell
 };
 
 [[nodiscard]] inline HexQuality quality(const HexMesh& m) {
@@ -188,7 +192,8 @@ struct [[nodiscard]] HexQuality {
   const auto& sorted = q.scaled_jacobian.sorted;
   q.inverted = static_cast<Index>(std::upper_bound(sorted.begin(), sorted.end(), 0.0) - sorted.begin());
   if (q.scaled_jacobian.worst_cell >= 0)
-    for (const Vec3& x : corners(m, q.scaled_jacobian.worst_cell)) q.worst_place += x / 8;
+    for (const Vec3& x : corners(m, q.scaled_jacobian.worst_cell))
+      q.worst_place = vec::along(q.worst_place, 1.0 / 8, x);
   return q;
 }
 

@@ -11,9 +11,10 @@ namespace tunica::mesh {
 /// Signed: positive when the normal of the triangle points away from p.
 /// tan(omega/2) = a.(b x c) / (abc + (a.b) c + (b.c) a + (c.a) b)   [OOSTEROM83, (8)]
 [[nodiscard]] inline double solid_angle(const Triangle& t, const Vec3& p) {
-  const Vec3 a = t.a - p, b = t.b - p, c = t.c - p;
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  return 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  const Vec3 a = vec::minus(t.a, p), b = vec::minus(t.b, p), c = vec::minus(t.c, p);
+  const double la = vec::length(a), lb = vec::length(b), lc = vec::length(c);
+  return 2 * std::atan2(vec::dot(a, vec::cross(b, c)),
+                        la * lb * lc + vec::dot(a, b) * lc + vec::dot(b, c) * la + vec::dot(c, a) * lb);
 }
 
 /// 4 pi times the number of times that the surface winds round p.

@@ -16,7 +16,7 @@ namespace tunica::mesh {
 /// A closed chain of open edges, run with the surface on its left.
 struct BoundaryLoop {
   std::vector<Index> nodes;  // as many as edges
-  Vec3 centre = Vec3::Zero();
+  Vec3 centre{0, 0, 0};
   double length = 0;
   Index component = 0;
 };
@@ -24,8 +24,8 @@ struct BoundaryLoop {
 /// A set of triangles joined by edges.
 struct Component {
   Index nodes = 0, edges = 0, triangles = 0, loops = 0;
-  double volume = 0;           // enclosed, signed; of no meaning when loops > 0
-  Vec3 centre = Vec3::Zero();  // mean of the centroids of its triangles
+  double volume = 0;     // enclosed, signed; of no meaning when loops > 0
+  Vec3 centre{0, 0, 0};  // mean of the centroids of its triangles
   [[nodiscard]] Index euler() const { return nodes - edges + triangles; }
   [[nodiscard]] Index genus() const { return (2 - loops - euler()) / 2; }
 };
@@ -97,13 +97,13 @@ namespace detail {
       done[static_cast<std::size_t>(h)] = 1;
       const auto [from, to] = half_edge(s.cells, h);
       const Vec3 x = node(s, from), y = node(s, to);
-      const double l = (y - x).norm();
+      const double l = vec::distance(x, y);
       loop.nodes.push_back(from);
-      loop.centre += 0.5 * l * (x + y);
+      loop.centre = vec::along(loop.centre, 0.5 * l, vec::plus(x, y));
       loop.length += l;
       h = leaves[static_cast<std::size_t>(to)];
     }
-    if (loop.length > 0) loop.centre /= loop.length;
+    if (loop.length > 0) loop.centre = vec::divided(loop.centre, loop.length);
     loops.push_back(std::move(loop));
   }
   return loops;
@@ -157,15 +157,15 @@ namespace detail {
     r.misoriented_edges += g == misoriented_edge;
   }
 
-  const Vec3 o = s.node_count() > 0 ? bounding_box(s.nodes).centre() : Vec3::Zero().eval();
+  const Vec3 o = s.node_count() > 0 ? bounding_box(s.nodes).centre() : Vec3(0, 0, 0);
   for (Index t = 0; t < r.triangles; ++t) {
     Component& c = r.components[index(r.component_of[index(t)])];
     const Triangle f = triangle(s, t);
     ++c.triangles;
-    c.centre += f.centroid();
-    c.volume += (f.a - o).dot((f.b - o).cross(f.c - o)) / 6;
+    c.centre = vec::plus(c.centre, f.centroid());
+    c.volume += cone_volume(f, o);
   }
-  for (Component& c : r.components) c.centre /= c.triangles;
+  for (Component& c : r.components) c.centre = vec::divided(c.centre, c.triangles);
   for (Index n = 0; n < s.node_count(); ++n) {
     const auto ring = around[n];
     if (ring.empty()) {

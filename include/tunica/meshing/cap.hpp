@@ -28,7 +28,10 @@ namespace tunica::meshing {
   };
   const auto count = static_cast<Index>(number.size());
   Points<2> x(2, count);
-  for (Index i = 0; i < count; ++i) x.col(i) = frame(nodes.col(number[static_cast<std::size_t>(i)]));
+  for (Index i = 0; i < count; ++i) {
+    const Point<2> p = frame(vec::column(nodes, number[static_cast<std::size_t>(i)]));
+    x(0, i) = p[0], x(1, i) = p[1];
+  }
   std::vector<Index> next(number.size(), -1);
   for (const auto& e : open) {
     Index& n = next[static_cast<std::size_t>(local(e.to))];

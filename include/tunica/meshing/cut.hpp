@@ -18,8 +18,8 @@ namespace tunica::meshing {
 
 /// A plane, or with a radius a disc. Lengths in the unit of the surface.
 struct Cut {
-  Vec3 point = Vec3::Zero();
-  Vec3 normal = Vec3::UnitX();  // outward, of any length: normal . (x - point) < 0 is kept
+  Vec3 point{0, 0, 0};
+  Vec3 normal{1, 0, 0};  // outward, of any length: normal . (x - point) < 0 is kept
   double radius = std::numeric_limits<double>::infinity();
   std::string name{};  // of the cap's region; empty: "cut 1", "cut 2" ... in order
 };
@@ -31,9 +31,9 @@ struct CutOptions {
 /// What a cut made.
 struct CutReport {
   std::string name;
-  Index region = 0;            // of the cap
-  double area = 0;             // of the cap
-  Vec3 centre = Vec3::Zero();  // of the cap
+  Index region = 0;      // of the cap
+  double area = 0;       // of the cap
+  Vec3 centre{0, 0, 0};  // of the cap
   Index rim_edges = 0;
   Index snapped = 0;  // nodes that were moved onto the plane
 };
@@ -104,9 +104,9 @@ inline void renumber(mesh::Surface& s, const std::vector<std::string>& before, I
 
 /// Makes one cut; the number of nodes that were moved onto the plane.
 inline Index apply(mesh::Surface& s, Cut cut, const CutOptions& options) {
-  TUNICA_EXPECT(cut.normal.norm() > 0, "the normal of a cut has a length");
+  TUNICA_EXPECT(vec::length(cut.normal) > 0, "the normal of a cut has a length");
   TUNICA_EXPECT(cut.radius > 0, "the radius of a cut is positive");
-  cut.normal.normalize();
+  cut.normal = vec::unit(cut.normal);
   for (const auto& name : s.region_names)
     if (name == cut.name) throw MeshError("two regions are named \"" + cut.name + "\"");
   std::vector<Index> avoided;
@@ -142,11 +142,11 @@ inline void measure(const mesh::Surface& s, CutReport& r) {
   for (Index t = 0; t < s.cell_count(); ++t) {
     if (s.region_of(t) != r.region) continue;
     const mesh::Triangle f = mesh::triangle(s, t);
-    r.area += f.area(), r.centre += f.area() * f.centroid();
+    r.area += f.area(), r.centre = vec::along(r.centre, f.area(), f.centroid());
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
       r.rim_edges += s.region_of(twin[static_cast<std::size_t>(h)] / 3) != r.region;
   }
-  if (r.area > 0) r.centre /= r.area;
+  if (r.area > 0) r.centre = vec::divided(r.centre, r.area);
 }
 
 }  // namespace detail

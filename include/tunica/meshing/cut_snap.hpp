@@ -56,9 +56,11 @@ class PlaneSnap {
     for (const Index t : around_[n])
       for (int k = 0; k < 3; ++k)
         if (const Index m = s_.cells(k, t); m != n)
-          shortest = std::min(shortest, (x_[at(m)] - x_[at(n)]).norm());
+          shortest = std::min(shortest, vec::distance(x_[at(m)], x_[at(n)]));
     const double off = 0.01 * shortest * sign_[at(n)] - distance_[at(n)];
-    if (off * sign_[at(n)] > 0) x_[at(n)] += off * plane_.normal, distance_[at(n)] += off;
+    if (off * sign_[at(n)] <= 0) return;
+    x_[at(n)] = vec::along(x_[at(n)], off, plane_.normal);
+    distance_[at(n)] += off;
   }
 
   void try_snap(Index n) {
@@ -69,9 +71,10 @@ class PlaneSnap {
     if (bonds_.of(n) != Bond::none && std::abs(d) > rounding * diagonal_) {
       if (bonds_.of(n) == Bond::corner) return;
       const Vec3& c = planes_[at(bonds_.region[at(n)])]->normal;
-      const Vec3 m = plane_.normal - plane_.normal.dot(c) * c;  // slides within its own plane
-      if (m.squaredNorm() < 0.1) return;
-      to = x_[at(n)] - d / m.squaredNorm() * m;
+      const Vec3 m =
+          vec::along(plane_.normal, -vec::dot(plane_.normal, c), c);  // slides within its own plane
+      if (vec::squared(m) < 0.1) return;
+      to = vec::along(x_[at(n)], -d / vec::squared(m), m);
     }
     const Vec3 from = x_[at(n)];
     for (const Index t : around_[n]) {
@@ -80,7 +83,7 @@ class PlaneSnap {
       x_[at(n)] = to;
       const mesh::Triangle is{x_[at(v[0])], x_[at(v[1])], x_[at(v[2])]};
       x_[at(n)] = from;
-      const bool turned = was.area_vector().dot(is.area_vector()) <= 0.5 * was.area() * is.area();
+      const bool turned = vec::dot(was.area_vector(), is.area_vector()) <= 0.5 * was.area() * is.area();
       constexpr double thin = 0.02;  // [rad]
       if (turned || is.smallest_angle() < std::min(thin, 0.5 * was.smallest_angle())) return;
     }

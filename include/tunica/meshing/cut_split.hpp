@@ -28,7 +28,7 @@ class Splitter {
       : s_(s), plane_(plane), twin_(mesh::twins(s.cells, s.node_count())) {
     for (const Index g : twin_)
       if (g < 0) throw MeshError("only a closed manifold surface can be cut");
-    for (Index n = 0; n < s.node_count(); ++n) distance_.push_back(plane.distance(s.nodes.col(n)));
+    for (Index n = 0; n < s.node_count(); ++n) distance_.push_back(plane.distance(mesh::node(s, n)));
   }
 
   [[nodiscard]] const std::vector<Index>& twin() const { return twin_; }
@@ -39,8 +39,8 @@ class Splitter {
   /// Splits the active triangles along the plane. Afterwards each triangle has a side. The nodes of
   /// `avoided`, ascending, are kept off the plane by a hundredth of their shortest edge.
   void split(const std::vector<char>& active, const std::vector<Index>& avoided) {
-    x_.assign(static_cast<std::size_t>(s_.node_count()), Vec3::Zero());
-    for (Index n = 0; n < s_.node_count(); ++n) x_[at(n)] = s_.nodes.col(n);
+    x_.clear();
+    for (Index n = 0; n < s_.node_count(); ++n) x_.push_back(mesh::node(s_, n));
     sign_.assign(x_.size(), 0);
     for (std::size_t n = 0; n < x_.size(); ++n) sign_[n] = distance_[n] < 0 ? -1 : 1;
     snapped_ = PlaneSnap(s_, plane_, avoided, x_, distance_, sign_).run(active);
@@ -51,7 +51,7 @@ class Splitter {
         const auto e = mesh::half_edge(s_.cells, g);
         const Vec3 &p = x_[at(e.from)], &q = x_[at(e.to)];
         const double dp = plane_.distance(p), dq = plane_.distance(q);
-        const Vec3 x = plane_.projected(p + dp / (dp - dq) * (q - p));
+        const Vec3 x = plane_.projected(vec::along(p, dp / (dp - dq), vec::minus(q, p)));
         made[at(g)] = static_cast<Index>(x_.size());
         x_.push_back(x), sign_.push_back(0);
       }
@@ -191,7 +191,8 @@ class Splitter {
       ++t;
     }
     r.nodes.resize(3, static_cast<Index>(used.size()));
-    for (std::size_t n = 0; n < used.size(); ++n) r.nodes.col(static_cast<Index>(n)) = x_[at(used[n])];
+    for (std::size_t n = 0; n < used.size(); ++n)
+      vec::set_column(r.nodes, static_cast<Index>(n), x_[at(used[n])]);
     r.region_names = s_.region_names;
     out = std::move(r);
     return kept;
@@ -238,10 +239,9 @@ class Splitter {
     std::vector<mesh::HalfEdge> behind, front;
     for (const auto& [e, side] : open_edges()) (side < 0 ? behind : front).push_back(e);
     rim_edges_ = static_cast<Index>(behind.size() + front.size());
-    Points<3> x(3, static_cast<Index>(x_.size()));
-    for (std::size_t n = 0; n < x_.size(); ++n) x.col(static_cast<Index>(n)) = x_[n];
+    const Points<3> x = vec::columns(x_);
     auto lid = caps(x, behind, plane_.point, plane_.normal);
-    const auto other = caps(x, front, plane_.point, -plane_.normal);
+    const auto other = caps(x, front, plane_.point, vec::scaled(-1, plane_.normal));
     lid.insert(lid.end(), other.begin(), other.end());
     return lid;
   }
@@ -252,7 +252,7 @@ class Splitter {
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       if (!kept_[t]) continue;
       const mesh::Triangle f = corners(triangles_[t]);
-      sum += (f.a - plane_.point).dot((f.b - plane_.point).cross(f.c - plane_.point));
+      sum += 6 * mesh::cone_volume(f, plane_.point);
     }
     return sum;
   }

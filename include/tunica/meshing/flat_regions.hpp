@@ -2,6 +2,7 @@
 // Which regions of a surface are flat, and how that binds its nodes: in a plane, on a rim, at a corner.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/measures.hpp"
 
@@ -18,8 +19,8 @@ namespace tunica::meshing {
 struct Plane {
   Vec3 point, normal;  // unit normal
 
-  [[nodiscard]] double distance(const Vec3& x) const { return normal.dot(x - point); }
-  [[nodiscard]] Vec3 projected(const Vec3& x) const { return x - distance(x) * normal; }
+  [[nodiscard]] double distance(const Vec3& x) const { return vec::dot(normal, vec::minus(x, point)); }
+  [[nodiscard]] Vec3 projected(const Vec3& x) const { return vec::along(x, -distance(x), normal); }
 };
 
 /// A region is flat when its nodes lie within this part of the bounding box's diagonal of one plane.
@@ -28,21 +29,22 @@ inline constexpr double flat_tolerance = 1e-9;
 /// The plane of each region of the surface, outward normal; none where it is curved or empty.
 [[nodiscard]] inline std::vector<std::optional<Plane>> flat_regions(const mesh::Surface& s) {
   const auto regions = std::max<std::size_t>(1, s.region_names.size());
-  std::vector<Vec3> normal(regions, Vec3::Zero()), centre(regions, Vec3::Zero());
+  std::vector<Vec3> normal(regions, Vec3(0, 0, 0)), centre(regions, Vec3(0, 0, 0));
   std::vector<double> area(regions, 0.0), off(regions, 0.0);
   for (Index t = 0; t < s.cell_count(); ++t) {
     const auto r = static_cast<std::size_t>(s.region_of(t));
     const mesh::Triangle f = mesh::triangle(s, t);
-    normal[r] += f.area_vector();
+    normal[r] = vec::plus(normal[r], f.area_vector());
     area[r] += f.area();
-    centre[r] += f.area() * f.centroid();
+    centre[r] = vec::along(centre[r], f.area(), f.centroid());
   }
   for (std::size_t r = 0; r < regions; ++r)
-    if (area[r] > 0) centre[r] /= area[r], normal[r].normalize();
+    if (area[r] > 0) centre[r] = vec::divided(centre[r], area[r]), normal[r] = vec::unit(normal[r]);
   for (Index t = 0; t < s.cell_count(); ++t)
     for (int k = 0; k < 3; ++k) {
       const auto r = static_cast<std::size_t>(s.region_of(t));
-      off[r] = std::max(off[r], std::abs(normal[r].dot(mesh::node(s, s.cells(k, t)) - centre[r])));
+      off[r] = std::max(off[r],
+                        std::abs(vec::dot(normal[r], vec::minus(mesh::node(s, s.cells(k, t)), centre[r]))));
     }
   const double tolerance = s.node_count() > 0 ? flat_tolerance * mesh::bounding_box(s.nodes).diagonal() : 0;
   std::vector<std::optional<Plane>> planes(regions);

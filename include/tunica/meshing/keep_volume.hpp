@@ -3,6 +3,7 @@
 // its linear part. [PEREZ08, 3.2.1]
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/measures.hpp"
 
 #include <array>
@@ -44,13 +45,17 @@ struct VolumeCubic {
                                                             const Vec3& origin) {
   std::vector<VolumeCubic> sum(static_cast<std::size_t>(parts)), carry(static_cast<std::size_t>(parts));
   for (Eigen::Index t = 0; t < cells.cols(); ++t) {
-    const Vec3 a = nodes.col(cells(0, t)) - origin, b = nodes.col(cells(1, t)) - origin,
-               c = nodes.col(cells(2, t)) - origin;
-    const auto p = directions.col(cells(0, t)), q = directions.col(cells(1, t)),
-               r = directions.col(cells(2, t));
-    const Vec3 bc = b.cross(c), qr = q.cross(r), mixed = b.cross(r) + q.cross(c);
-    const std::array<double, 4> term{a.dot(bc), p.dot(bc) + a.dot(mixed), p.dot(mixed) + a.dot(qr),
-                                     p.dot(qr)};
+    std::array<Vec3, 3> x, d;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index n = cells(static_cast<Eigen::Index>(k), t);
+      x[k] = vec::minus(vec::column(nodes, n), origin), d[k] = vec::column(directions, n);
+    }
+    const auto& [a, b, c] = x;
+    const auto& [p, q, r] = d;
+    const Vec3 bc = vec::cross(b, c), qr = vec::cross(q, r),
+               mixed = vec::plus(vec::cross(b, r), vec::cross(q, c));
+    const std::array<double, 4> term{vec::dot(a, bc), vec::dot(p, bc) + vec::dot(a, mixed),
+                                     vec::dot(p, mixed) + vec::dot(a, qr), vec::dot(p, qr)};
     const auto part = static_cast<std::size_t>(part_of[static_cast<std::size_t>(t)]);
     for (std::size_t k = 0; k < 4; ++k) {  // compensated sums
       const double y = term[k] - carry[part].c[k], next = sum[part].c[k] + y;

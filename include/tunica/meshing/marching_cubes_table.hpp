@@ -70,7 +70,7 @@ struct MarchingCase {
 
 /// Adds the triangulation of the loop whose worst triangle is best, by dynamic programming over its
 /// sub-polygons; chords in a face of the cell are forbidden.
-constexpr void triangulate_loop(const std::array<int, 12>& loop, std::size_t n, MarchingCase& out) {
+inline void triangulate_loop(const std::array<int, 12>& loop, std::size_t n, MarchingCase& out) {
   constexpr double forbidden = -1;
   std::array<std::array<double, 12>, 12> best{};  // of the sub-polygon i..j
   std::array<std::array<std::size_t, 12>, 12> apex{};
@@ -104,7 +104,7 @@ constexpr void triangulate_loop(const std::array<int, 12>& loop, std::size_t n, 
   }
 }
 
-[[nodiscard]] constexpr MarchingCase marching_case(unsigned signs) {
+[[nodiscard]] inline MarchingCase marching_case(unsigned signs) {
   MarchingCase result;
   const auto next = strands(signs);
   std::array<bool, 12> done{};

@@ -55,15 +55,19 @@ class PolygonFill {
   }
 
  private:
-  [[nodiscard]] Point<2> at(Index n) const { return x_.col(n); }
+  [[nodiscard]] Point<2> at(Index n) const { return {x_(0, n), x_(1, n)}; }
+  [[nodiscard]] double dot(Index o, Index a, Index b) const {  // (a - o) . (b - o)
+    return (x_(0, a) - x_(0, o)) * (x_(0, b) - x_(0, o)) + (x_(1, a) - x_(1, o)) * (x_(1, b) - x_(1, o));
+  }
+  [[nodiscard]] double squared(Index a, Index b) const { return dot(a, b, b); }
   [[nodiscard]] double turn(Index a, Index b, Index c) const { return orient2d(at(a), at(b), at(c)); }
 
   [[nodiscard]] double area(const Corners& l) const {
     double sum = 0;
     const Point<2> o = at(l.front());
     for (std::size_t i = 0; i < l.size(); ++i) {
-      const Point<2> p = at(l[i]) - o, q = at(l[(i + 1) % l.size()]) - o;
-      sum += 0.5 * (p[0] * q[1] - p[1] * q[0]);
+      const Point<2> p = at(l[i]), q = at(l[(i + 1) % l.size()]);
+      sum += 0.5 * ((p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]));
     }
     return sum;
   }
@@ -83,7 +87,7 @@ class PolygonFill {
       const Index p = l[i], q = l[(i + 1) % l.size()];
       if (p == a || p == b || q == a || q == b) {
         for (const Index r : {p, q})
-          if (r != a && r != b && turn(a, b, r) == 0 && (at(r) - at(a)).dot(at(r) - at(b)) < 0) return false;
+          if (r != a && r != b && turn(a, b, r) == 0 && dot(r, a, b) < 0) return false;
         continue;
       }
       if (turn(a, b, p) * turn(a, b, q) <= 0 && turn(p, q, a) * turn(p, q, b) <= 0) return false;
@@ -101,7 +105,7 @@ class PolygonFill {
       for (std::size_t h = 0; h < holes.size(); ++h)
         for (std::size_t i = 0; i < holes[h].size(); ++i)
           for (std::size_t j = 0; j < outer.size(); ++j) {
-            const double d = (at(holes[h][i]) - at(outer[j])).squaredNorm();
+            const double d = squared(holes[h][i], outer[j]);
             if (d >= best.squared || !visible(holes[h][i], outer[j], outer)) continue;
             bool clear = true;
             for (const Corners& other : holes) clear = clear && visible(holes[h][i], outer[j], other);
@@ -123,8 +127,7 @@ class PolygonFill {
   /// sides.
   [[nodiscard]] double shape(Index a, Index b, Index c) const {
     const double area = turn(a, b, c);
-    std::array<double, 3> l{(at(b) - at(a)).squaredNorm(), (at(c) - at(b)).squaredNorm(),
-                            (at(a) - at(c)).squaredNorm()};
+    std::array<double, 3> l{squared(a, b), squared(b, c), squared(c, a)};
     std::sort(l.begin(), l.end());
     return area <= 0 || l[1] == 0 ? 0 : area * area / (l[1] * l[2]);
   }

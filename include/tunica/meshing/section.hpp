@@ -2,10 +2,9 @@
 // Sections of a closed surface by a plane: the parts that the plane opens, their loops, holes and distances.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/measures.hpp"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -22,8 +21,14 @@ struct PlaneFrame {
   Vec3 origin, u, v;
 
   PlaneFrame(const Vec3& point, const Vec3& normal)
-      : origin(point), u(normal.unitOrthogonal()), v(normal.cross(u)) {}
-  [[nodiscard]] Point<2> operator()(const Vec3& x) const { return {u.dot(x - origin), v.dot(x - origin)}; }
+      : origin(point), u(vec::orthogonal(normal)), v(vec::cross(normal, u)) {}
+  [[nodiscard]] Point<2> operator()(const Vec3& x) const {
+    const Vec3 d = vec::minus(x, origin);
+    return {vec::dot(u, d), vec::dot(v, d)};
+  }
+  [[nodiscard]] Vec3 place(const Point<2>& p) const {
+    return vec::along(vec::along(origin, p[0], u), p[1], v);
+  }
 };
 
 /// One connected part of a section: an outer loop with its holes.
@@ -31,7 +36,7 @@ struct Section {
   std::vector<Index> triangles;  // that the plane crosses there, ascending
   double nearest = 0;            // distance of the part from the point of the plane: 0 where it covers it
   double farthest = 0;           // of its outer loop
-  Vec3 centre = Vec3::Zero();    // mean of the points of the outer loop
+  Vec3 centre{0, 0, 0};          // mean of the points of the outer loop
 };
 
 namespace detail {
@@ -51,15 +56,15 @@ struct SectionLoop {
   [[nodiscard]] double nearest_to_origin() const {
     double d = std::numeric_limits<double>::infinity();
     for (const auto& [a, b] : segments) {
-      const Point<2> e = b - a;
-      const double l2 = e.squaredNorm(), t = l2 > 0 ? std::clamp(-a.dot(e) / l2, 0.0, 1.0) : 0.0;
-      d = std::min(d, (a + t * e).norm());
+      const double ex = b[0] - a[0], ey = b[1] - a[1], l2 = ex * ex + ey * ey;
+      const double t = l2 > 0 ? std::clamp(-(a[0] * ex + a[1] * ey) / l2, 0.0, 1.0) : 0.0;
+      d = std::min(d, std::hypot(a[0] + t * ex, a[1] + t * ey));
     }
     return d;
   }
   [[nodiscard]] double farthest_from_origin() const {
     double d = 0;
-    for (const auto& [a, b] : segments) d = std::max({d, a.norm(), b.norm()});
+    for (const auto& [a, b] : segments) d = std::max({d, std::hypot(a[0], a[1]), std::hypot(b[0], b[1])});
     return d;
   }
 };
@@ -71,8 +76,8 @@ struct SectionLoop {
   const auto front = [&](Index n) { return distance[static_cast<std::size_t>(n)] >= 0; };
   const auto place = [&](Index a, Index b) {
     const double da = distance[static_cast<std::size_t>(a)], db = distance[static_cast<std::size_t>(b)];
-    const Vec3 x = mesh::node(s, a), y = mesh::node(s, b);
-    return frame(x + da / (da - db) * (y - x));
+    const Vec3 x = mesh::node(s, a);
+    return frame(vec::along(x, da / (da - db), vec::minus(mesh::node(s, b), x)));
   };
   std::vector<SectionLoop> loops;
   std::vector<char> done(static_cast<std::size_t>(s.cell_count()), 0);
@@ -107,7 +112,7 @@ struct SectionLoop {
                                                    const std::vector<double>& distance,
                                                    const PlaneFrame& frame) {
   const auto loops = detail::section_loops(s, twin, distance, frame);
-  const Point<2> origin = Point<2>::Zero();
+  const Point<2> origin(0, 0);
   std::vector<std::vector<std::size_t>> holders(loops.size());  // loops that hold each loop
   for (std::size_t i = 0; i < loops.size(); ++i)
     for (std::size_t j = 0; j < loops.size(); ++j)
@@ -129,8 +134,8 @@ struct SectionLoop {
     if (covers) part.nearest = 0;
     std::sort(part.triangles.begin(), part.triangles.end());
     for (const auto& [a, b] : loops[i].segments)
-      part.centre +=
-          (frame.origin + a[0] * frame.u + a[1] * frame.v) / static_cast<double>(loops[i].segments.size());
+      part.centre =
+          vec::along(part.centre, 1 / static_cast<double>(loops[i].segments.size()), frame.place(a));
     result.push_back(std::move(part));
   }
   return result;

@@ -6,6 +6,8 @@
 #include "tunica/mesh/triangle.hpp"
 #include "tunica/search/octree.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <concepts>
