@@ -21,7 +21,7 @@ namespace {
 double kinetic_energy(const mesh::TetMesh& mesh, const Points<3>& u, double density) {
   double sum = 0;
   for (Index e = 0; e < mesh.cell_count(); ++e) {
-    const auto ue = fluid::nodal<3>(u, mesh.cells, e);
+    const auto ue = fluid::nodal(u, mesh.cells, e);
     const Vec3 total = ue.rowwise().sum();
     sum += density / 2 * fem::p1_tet(mesh.nodes, mesh.cells, e).volume / 20 *
            (total.squaredNorm() + ue.squaredNorm());

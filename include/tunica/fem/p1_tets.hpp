@@ -6,9 +6,9 @@
 #include "tunica/core/types.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -26,15 +26,20 @@ struct P1Tet {
 
 /// x: 3 x nodes; the four columns of cell e of `cells`.
 [[nodiscard]] inline P1Tet p1_tet(const Points<3>& x, const Connectivity<4>& cells, Index e) {
-  const Vec3 x0 = x.col(cells(0, e));
-  const Vec3 e1 = x.col(cells(1, e)) - x0, e2 = x.col(cells(2, e)) - x0, e3 = x.col(cells(3, e)) - x0;
+  const auto node = [&](int a) { return x.data() + 3 * std::ptrdiff_t{cells(a, e)}; };
+  const double *x0 = node(0), *x1 = node(1), *x2 = node(2), *x3 = node(3);
+  const double p[3] = {x1[0] - x0[0], x1[1] - x0[1], x1[2] - x0[2]};
+  const double q[3] = {x2[0] - x0[0], x2[1] - x0[1], x2[2] - x0[2]};
+  const double r[3] = {x3[0] - x0[0], x3[1] - x0[1], x3[2] - x0[2]};
+  const double pq[3] = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+  const double qr[3] = {q[1] * r[2] - q[2] * r[1], q[2] * r[0] - q[0] * r[2], q[0] * r[1] - q[1] * r[0]};
+  const double rp[3] = {r[1] * p[2] - r[2] * p[1], r[2] * p[0] - r[0] * p[2], r[0] * p[1] - r[1] * p[0]};
+  const double six_volume = p[0] * qr[0] + p[1] * qr[1] + p[2] * qr[2], scale = 1 / six_volume;
   P1Tet tet;
-  tet.grad.col(1) = e2.cross(e3);
-  tet.grad.col(2) = e3.cross(e1);
-  tet.grad.col(3) = e1.cross(e2);
-  const double six_volume = e1.dot(tet.grad.col(1));
-  tet.grad.rightCols<3>() /= six_volume;
-  tet.grad.col(0) = -(tet.grad.col(1) + tet.grad.col(2) + tet.grad.col(3));
+  for (int c = 0; c < 3; ++c) {
+    tet.grad(c, 1) = qr[c] * scale, tet.grad(c, 2) = rp[c] * scale, tet.grad(c, 3) = pq[c] * scale;
+    tet.grad(c, 0) = -(tet.grad(c, 1) + tet.grad(c, 2) + tet.grad(c, 3));
+  }
   tet.volume = six_volume / 6;
   return tet;
 }

@@ -10,7 +10,8 @@ namespace tunica::fluid {
 
 /// int N_i q over a face of that area for a nodal q: area/12 (sum q + q_i).
 [[nodiscard]] inline Vec3 face_load(double area, const Vec3& q) {
-  return area / 12 * (Vec3::Constant(q.sum()) + q);
+  const double sum = q[0] + q[1] + q[2], s = area / 12;
+  return {s * (sum + q[0]), s * (sum + q[1]), s * (sum + q[2])};
 }
 
 /// Adds -int N_i p n of the prescribed pressures (nodes) to right (3 x nodes), and the matrix of
@@ -24,9 +25,9 @@ inline void add_boundary_terms(const fem::Assembly<mesh::Tet4, 1>& pattern, cons
       const Vec3 n = Conditions::area_vector(x, c.faces, f);
       const Vec3 p(prescribed[c.faces(0, f)], prescribed[c.faces(1, f)], prescribed[c.faces(2, f)]);
       const Vec3 load = face_load(1, p);
-      for (int i = 0; i < 3; ++i) right.col(c.faces(i, f)) -= load[i] * n;
+      for (int i = 0; i < 3; ++i) add(right, c.faces(i, f), -load[i], n);
       if (c.backflow == 0) continue;
-      const double flux = (a.col(c.faces(0, f)) + a.col(c.faces(1, f)) + a.col(c.faces(2, f))).dot(n) / 3;
+      const double flux = Conditions::flux(x, c.faces, a, f);
       if (flux >= 0) continue;
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)

@@ -19,29 +19,42 @@ namespace tunica::fluid {
 /// operator gamma L + T is far below gamma L + L_t there, by tau/gamma: those pressures are smooth
 /// enough for a coarse grid, on which the operator itself is factored. Preconditioner of the sum form
 /// M^-1 = (L L^T)^-1 + Z (Z^T A Z)^-1 Z^T, symmetric positive definite. [NICOLAIDES87]
+/// A template of its scalar: dense factors cost the scenes that take a step.
+template <class Scalar = double>
 class CoarseSpace {
+  using Vector = Eigen::VectorX<Scalar>;
+  using Dense = Eigen::MatrixX<Scalar>;
+
  public:
   /// x: 3 x nodes, in a domain of that volume [m3]; later motions of the nodes do not matter.
-  template <class Nodes>
-  CoarseSpace(const Nodes& x, double volume) {
+  CoarseSpace(const Points<3>& x, double volume) {
     constexpr double nodes_a_cell = 200, most_functions = 600;
     const auto n = static_cast<double>(x.cols());
     const double H = std::cbrt(std::max(nodes_a_cell, 2 * n / most_functions) * volume / n);
-    const Vec3 lo = x.rowwise().minCoeff(), extent = x.rowwise().maxCoeff() - lo;
-    const Eigen::Vector3i cells = (extent / H).array().ceil().max(1).cast<int>();
-    const Vec3 step = (extent.array() / cells.cast<double>().array()).matrix();
+    Box box;
+    for (Eigen::Index i = 0; i < x.cols(); ++i) box.extend(Vec3(x(0, i), x(1, i), x(2, i)));
+    int cells[3];
+    double step[3];
+    for (int d = 0; d < 3; ++d) {
+      cells[d] = std::max(1, static_cast<int>(std::ceil((box.hi[d] - box.lo[d]) / H)));
+      step[d] = (box.hi[d] - box.lo[d]) / cells[d];
+    }
     entries_.resize(static_cast<std::size_t>(x.cols()));
-    std::vector<Index> number(static_cast<std::size_t>((cells.array() + 1).prod()), -1);
+    std::vector<Index> number(static_cast<std::size_t>((cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1)), -1);
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
-      const Vec3 at = (x.col(i) - lo).cwiseQuotient(step);
-      const Eigen::Vector3i corner = at.array().floor().cast<int>().max(0).min(cells.array() - 1);
+      double at[3];  // in cells of the grid
+      int corner[3];
+      for (int d = 0; d < 3; ++d) {
+        at[d] = (x(d, i) - box.lo[d]) / step[d];
+        corner[d] = std::clamp(static_cast<int>(std::floor(at[d])), 0, cells[d] - 1);
+      }
       for (int c = 0; c < 8; ++c) {
         double weight = 1;
-        std::array<int, 3> k{};
+        int k[3];
         for (int d = 0; d < 3; ++d) {
           const int far = c >> d & 1;
           const double s = at[d] - corner[d];
-          k[static_cast<std::size_t>(d)] = corner[d] + far;
+          k[d] = corner[d] + far;
           weight *= far ? s : 1 - s;
         }
         auto& id = number[static_cast<std::size_t>(k[0] + (cells[0] + 1) * (k[1] + (cells[1] + 1) * k[2]))];
@@ -55,12 +68,14 @@ class CoarseSpace {
 
   /// Z^T A Z and its factors. forward (4 x entries of the pattern): for the entry (i, j) the three Q_ji
   /// and (gamma L + L_t)_ij; scale: 1 / Mt; prescribed: nodes that are left out.
-  template <class Matrix, class Forward>
-  void compute(const Matrix& pattern, const Forward& forward, const Eigen::VectorXd& scale,
-               const std::vector<char>& prescribed) {
+  void compute(const la::RowMatrix& pattern, const Eigen::Matrix<double, 4, Eigen::Dynamic>& forward,
+               const Eigen::VectorXd& scale, const std::vector<char>& prescribed) {
     prescribed_ = prescribed;
-    Eigen::MatrixXd E = Eigen::MatrixXd::Zero(size_, size_);
-    Eigen::Matrix<double, 4, Eigen::Dynamic> row = Eigen::Matrix<double, 4, Eigen::Dynamic>::Zero(4, size_);
+    Dense E = Dense::Zero(size_, size_);
+    using Four = Eigen::Matrix<Scalar, 4, 1>;
+    const auto* entry = forward.data();
+    std::vector<Four> rows(static_cast<std::size_t>(size_), Four::Zero());
+    const auto row = [&](Index k) -> Four& { return rows[static_cast<std::size_t>(k)]; };
     std::vector<char> in(static_cast<std::size_t>(size_), 0);
     std::vector<Index> touched;
     const int *outer = pattern.outerIndexPtr(), *inner = pattern.innerIndexPtr();
@@ -72,36 +87,37 @@ class CoarseSpace {
         for (const Entry& z : entries_[j]) {
           if (!in[static_cast<std::size_t>(z.function)])
             in[static_cast<std::size_t>(z.function)] = 1, touched.push_back(z.function);
-          row.col(z.function) += z.weight * forward.col(k);
+          row(z.function) +=
+              z.weight * Eigen::Map<const Four, Eigen::AlignedMax>(entry + 4 * std::ptrdiff_t{k});
         }
       }
       const double s = scale[i];
       const auto& own = entries_[static_cast<std::size_t>(i)];
       for (const Index a : touched) {
+        const Four& ra = row(a);
         if (!prescribed[static_cast<std::size_t>(i)])  // z_i (gamma L + L_t)_i. z
-          for (const Entry& z : own) E(z.function, a) += z.weight * row(3, a);
+          for (const Entry& z : own) E(z.function, a) += z.weight * ra[3];
         for (const Index b : touched)
-          if (b >= a)
-            E(b, a) -= s * row.col(a).head<3>().dot(row.col(b).head<3>());  // (Q^T z)^T Mt^-1 (Q^T z)
+          if (const Four& rb = row(b); b >= a)
+            E(b, a) -= s * (ra[0] * rb[0] + ra[1] * rb[1] + ra[2] * rb[2]);  // (Q^T z)^T Mt^-1 (Q^T z)
       }
-      for (const Index a : touched) row.col(a).setZero(), in[static_cast<std::size_t>(a)] = 0;
+      for (const Index a : touched) row(a).setZero(), in[static_cast<std::size_t>(a)] = 0;
     }
     const double largest = E.diagonal().maxCoeff();
     for (Index a = 0; a < size_; ++a)  // a function without a free node
       if (!(E(a, a) > 1e-12 * largest)) E(a, a) = largest;
     if (std::find(prescribed.begin(), prescribed.end(), 1) == prescribed.end()) {
       // Constants are in the null space of A: give them the size of the rest.
-      Eigen::VectorXd weight = Eigen::VectorXd::Zero(size_);
+      Vector weight = Vector::Zero(size_);
       for (const auto& entries : entries_)
         for (const Entry& e : entries) weight[e.function] += e.weight;
       E += largest / weight.squaredNorm() * weight * weight.transpose();
     }
-    factors_.compute(E.selfadjointView<Eigen::Lower>());
+    factors_.compute(E);  // reads the lower triangle
     usable_ = factors_.info() == Eigen::Success && E.allFinite();
   }
 
   /// z += Z (Z^T A Z)^-1 Z^T r; r zero at the prescribed nodes.
-  template <class Vector>
   void add(const Vector& r, Vector& z) const {
     if (!usable_) return;
     Vector coarse = Vector::Zero(size_);
@@ -123,7 +139,7 @@ class CoarseSpace {
   };
   std::vector<std::array<Entry, 8>> entries_;  // of a node
   Index size_ = 0;
-  Eigen::LLT<Eigen::MatrixXd> factors_;
+  Eigen::LLT<Dense> factors_;
   std::vector<char> prescribed_;
   bool usable_ = false;
 };

@@ -4,10 +4,9 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/fluid/boundary_function.hpp"
+#include "tunica/fluid/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/patch_nodes.hpp"
-
-#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <string>
@@ -47,18 +46,19 @@ struct Condition {
 class Conditions {
  public:
   explicit Conditions(const mesh::TetMesh& mesh) : node_count_(static_cast<std::size_t>(mesh.node_count())) {
-    Vec3 sum = Vec3::Zero();
+    Vec3 sum = Vec3(0, 0, 0);
     double area = 0;
     for (const auto& patch : mesh.patches) {
       list_.push_back({.name = patch.name, .faces = patch.faces, .nodes = mesh::patch_nodes(patch)});
       for (Eigen::Index f = 0; f < patch.faces.cols(); ++f) {
         const Vec3 n = area_vector(mesh.nodes, patch.faces, f);
-        sum += n, area += n.norm();
+        for (int c = 0; c < 3; ++c) sum[c] += n[c];
+        area += length(n);
       }
     }
-    if (!(area > 0) || !(sum.norm() < 1e-8 * area))
+    if (!(area > 0) || !(length(sum) < 1e-8 * area))
       throw MeshError("the patches of the fluid do not close its boundary: their area vectors add up to " +
-                      std::to_string(area > 0 ? sum.norm() / area : 1.0) + " of its area");
+                      std::to_string(area > 0 ? length(sum) / area : 1.0) + " of its area");
     flag();
   }
 
@@ -98,18 +98,18 @@ class Conditions {
   void impose_velocity(const Points<3>& x, const Points<3>& w, double t, Points<3>& u) const {
     for (const auto& c : list_) {
       if (c.kind != Kind::velocity) continue;
-      const double waveform = c.profile.cols() > 0 ? c.scalar(Vec3::Zero(), t) : 0;
+      const double waveform = c.profile.cols() > 0 ? c.scalar(Vec3(0, 0, 0), t) : 0;
       for (std::size_t k = 0; k < c.nodes.size(); ++k) {
         const Index n = c.nodes[k];
         if (c.profile.cols() > 0)
-          u.col(n) = waveform * c.profile.col(static_cast<Eigen::Index>(k));
+          for (int d = 0; d < 3; ++d) u(d, n) = waveform * c.profile(d, static_cast<Index>(k));
         else
-          u.col(n) = c.velocity(x.col(n), t);
+          set_column(u, n, c.velocity(column(x, n), t));
       }
     }
     for (const auto& c : list_)
       if (c.kind == Kind::wall)
-        for (const Index n : c.nodes) u.col(n) = w.col(n);
+        for (const Index n : c.nodes) set_column(u, n, column(w, n));
   }
 
   /// Writes the prescribed pressures at time t into p (nodes), 0 elsewhere.
@@ -117,20 +117,29 @@ class Conditions {
     p.setZero(static_cast<Eigen::Index>(node_count_));
     for (const auto& c : list_)
       if (c.kind == Kind::pressure)
-        for (const Index n : c.nodes) p[n] = c.scalar(x.col(n), t);
+        for (const Index n : c.nodes) p[n] = c.scalar(column(x, n), t);
   }
 
   /// Normal times area of a face, outward [m2].
   [[nodiscard]] static Vec3 area_vector(const Points<3>& x, const Connectivity<3>& faces, Eigen::Index f) {
-    const Vec3 a = x.col(faces(0, f)), b = x.col(faces(1, f)), c = x.col(faces(2, f));
-    return 0.5 * (b - a).cross(c - a);
+    const Vec3 a = column(x, faces(0, f)), b = column(x, faces(1, f)), c = column(x, faces(2, f));
+    const double p[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const double q[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    return {0.5 * (p[1] * q[2] - p[2] * q[1]), 0.5 * (p[2] * q[0] - p[0] * q[2]),
+            0.5 * (p[0] * q[1] - p[1] * q[0])};
   }
 
-  /// int v . n over the faces for a nodal field v (3 x nodes).
+  /// int v . n over a face, or over all of them, for a nodal field v (3 x nodes).
+  [[nodiscard]] static double flux(const Points<3>& x, const Connectivity<3>& faces, const Points<3>& v,
+                                   Eigen::Index f) {
+    const Vec3 n = area_vector(x, faces, f);
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) sum += n[c] * (v(c, faces(0, f)) + v(c, faces(1, f)) + v(c, faces(2, f)));
+    return sum / 3;
+  }
   [[nodiscard]] static double flux(const Points<3>& x, const Connectivity<3>& faces, const Points<3>& v) {
     double sum = 0;
-    for (Eigen::Index f = 0; f < faces.cols(); ++f)
-      sum += area_vector(x, faces, f).dot(v.col(faces(0, f)) + v.col(faces(1, f)) + v.col(faces(2, f))) / 3;
+    for (Eigen::Index f = 0; f < faces.cols(); ++f) sum += flux(x, faces, v, f);
     return sum;
   }
 

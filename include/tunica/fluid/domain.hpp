@@ -5,6 +5,7 @@
 #include "tunica/fem/assembly.hpp"
 #include "tunica/fem/p1_tets.hpp"
 #include "tunica/fluid/conditions.hpp"
+#include "tunica/fluid/element.hpp"
 
 namespace tunica::fluid {
 

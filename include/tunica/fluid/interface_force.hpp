@@ -42,55 +42,66 @@ class InterfaceForce {
       if (c.name == wall.name) continue;
       for (Eigen::Index f = 0; f < c.faces.cols(); ++f)
         if (on_wall(c.faces(0, f)) || on_wall(c.faces(1, f)) || on_wall(c.faces(2, f)))
-          rim_.push_back({k, f, owner(cells, c.faces.col(f))});
+          rim_.push_back({k, f, owner(cells, c.faces, f)});
     }
   }
 
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
 
-  /// 3 x nodes() [N]; x: 3 x nodes of the mesh, prescribed: pressures of the pressure patches (nodes).
-  /// fields: ForceFields.
-  template <Rheology R, Stabilization S, class Tets, class Fields>
-  [[nodiscard]] Points<3> evaluate(const Connectivity<4>& cells, const Tets& tets, const R& fluid,
-                                   const S& stabilization, const Conditions& conditions, const Points<3>& x,
-                                   const Eigen::VectorXd& prescribed, const Fields& fields) const {
+  /// 3 x nodes() [N]; prescribed: pressures of the pressure patches (nodes).
+  template <Rheology R, Stabilization S>
+  [[nodiscard]] Points<3> evaluate(const Domain& domain, const R& fluid, const S& stabilization,
+                                   const Eigen::VectorXd& prescribed, const ForceFields& fields) const {
+    const Connectivity<4>& cells = domain.cells;
     Points<3> force = Points<3>::Zero(3, static_cast<Eigen::Index>(nodes_.size()));
     for (const Index e : cells_) {
-      const auto& tet = tets[e];
+      const fem::P1Tet& tet = domain.tets[e];
       const double V = tet.volume;
-      const Eigen::Matrix<double, 3, 4> a = nodal<3>(fields.a, cells, e), u = nodal<3>(fields.u, cells, e);
+      const Nodal3 a = nodal(fields.a, cells, e), u = nodal(fields.u, cells, e);
+      const Nodal3 rate = nodal(fields.rate, cells, e);
       const ElementFlow flow = element_flow(fluid, stabilization, tet, a, u);
-      const Eigen::Matrix3d grad_u = u * tet.grad.transpose();
-      Eigen::Matrix<double, 3, 4> inertia = fluid.density * (nodal<3>(fields.rate, cells, e) + grad_u * a);
-      if (fields.force.cols() > 0) inertia -= nodal<3>(fields.force, cells, e);
-      const Vec3 total = inertia.rowwise().sum();
-      const Vec3 wiggle =
-          flow.stabilisation * V * (grad_u * flow.a - nodal<3>(fields.smoothed, cells, e).rowwise().mean());
-      const double p = nodal(fields.p, cells, e).mean();
+      const Matrix3 grad_u = gradient(u, tet.grad);
+      Nodal3 inertia;  // rho du/dt + rho a.grad u - f
+      for (int i = 0; i < 4; ++i) {
+        const Vec3 convection = product(grad_u, {a(0, i), a(1, i), a(2, i)});
+        for (int c = 0; c < 3; ++c) inertia(c, i) = fluid.density * (rate(c, i) + convection[c]);
+      }
+      if (fields.force.cols() > 0) {
+        const Nodal3 f = nodal(fields.force, cells, e);
+        for (int k = 0; k < 12; ++k) inertia.data()[k] -= f.data()[k];
+      }
+      const Vec3 total = sum(inertia), ahead = product(grad_u, flow.a);
+      const Vec3 smooth = mean(nodal(fields.smoothed, cells, e));
+      const double p = mean(nodal(fields.p, cells, e));
       for (int i = 0; i < 4; ++i) {
         const Index k = find(cells(i, e));
         if (k < 0) continue;
-        force.col(k) -= V / 20 * (total + inertia.col(i))  // rho du/dt + rho a.grad u - f
-                        + V * (flow.viscosity * grad_u - p * Eigen::Matrix3d::Identity()) * tet.grad.col(i) +
-                        flow.a.dot(tet.grad.col(i)) * wiggle;
+        const Vec3 g(tet.grad(0, i), tet.grad(1, i), tet.grad(2, i)), viscous = product(grad_u, g);
+        const double wiggle = flow.stabilisation * V * dot(flow.a, g);
+        for (int c = 0; c < 3; ++c)
+          force(c, k) -= V / 20 * (total[c] + inertia(c, i)) + V * (flow.viscosity * viscous[c] - p * g[c]) +
+                         wiggle * (ahead[c] - smooth[c]);
       }
     }
     for (const Rim& rim : rim_) {
-      const Condition& c = conditions.list()[rim.patch];
-      const Vec3 n = Conditions::area_vector(x, c.faces, rim.face);
+      const Condition& c = domain.conditions.list()[rim.patch];
+      const Vec3 n = Conditions::area_vector(domain.position, c.faces, rim.face);
       const auto& values = c.kind == Kind::pressure ? prescribed : fields.p;
       const Vec3 p = face_load(
           1, {values[c.faces(0, rim.face)], values[c.faces(1, rim.face)], values[c.faces(2, rim.face)]});
-      Vec3 viscous = Vec3::Zero();
+      Vec3 viscous(0, 0, 0);  // a third of mu (du/dn) area
       if (c.kind != Kind::pressure) {
-        const auto& tet = tets[rim.cell];
-        const Eigen::Matrix<double, 3, 4> u = nodal<3>(fields.u, cells, rim.cell);
-        const ElementFlow flow =
-            element_flow(fluid, stabilization, tet, nodal<3>(fields.a, cells, rim.cell), u);
-        viscous = flow.viscosity * (u * tet.grad.transpose()) * n / 3;
+        const fem::P1Tet& tet = domain.tets[rim.cell];
+        const Nodal3 a = nodal(fields.a, cells, rim.cell), u = nodal(fields.u, cells, rim.cell);
+        const double third = element_flow(fluid, stabilization, tet, a, u).viscosity / 3;
+        const Vec3 slope = product(gradient(u, tet.grad), n);
+        viscous = {third * slope[0], third * slope[1], third * slope[2]};
       }
       for (int i = 0; i < 3; ++i)
-        if (const Index k = find(c.faces(i, rim.face)); k >= 0) force.col(k) += viscous - p[i] * n;
+        if (const Index k = find(c.faces(i, rim.face)); k >= 0) {
+          add(force, k, 1, viscous);
+          add(force, k, -p[i], n);
+        }
     }
     return force;
   }
@@ -108,10 +119,14 @@ class InterfaceForce {
   }
   [[nodiscard]] bool on_wall(Index node) const { return find(node) >= 0; }
 
-  [[nodiscard]] Index owner(const Connectivity<4>& cells, const Eigen::Matrix<Index, 3, 1>& face) const {
-    for (const Index e : cells_)
-      if (std::all_of(face.begin(), face.end(), [&](Index n) { return (cells.col(e).array() == n).any(); }))
-        return e;
+  [[nodiscard]] Index owner(const Connectivity<4>& cells, const Connectivity<3>& faces,
+                            Eigen::Index f) const {
+    for (const Index e : cells_) {
+      int shared = 0;
+      for (int i = 0; i < 3; ++i)
+        for (int a = 0; a < 4; ++a) shared += cells(a, e) == faces(i, f);
+      if (shared == 3) return e;
+    }
     throw MeshError("a face of the fluid's boundary belongs to no tetrahedron");
   }
 

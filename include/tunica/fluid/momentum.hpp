@@ -7,23 +7,9 @@
 #include "tunica/fluid/stabilization.hpp"
 #include "tunica/la/vector_ops.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace tunica::fluid {
-
-/// The nodal fields of a cell as columns.
-template <int Rows, class Field>
-[[nodiscard]] Eigen::Matrix<double, Rows, 4> nodal(const Field& field, const Connectivity<4>& cells,
-                                                   Index e) {
-  Eigen::Matrix<double, Rows, 4> values;
-  for (int a = 0; a < 4; ++a) values.col(a) = field.col(cells(a, e));
-  return values;
-}
-
-[[nodiscard]] inline Eigen::Vector4d nodal(const Eigen::VectorXd& p, const Connectivity<4>& cells, Index e) {
-  return {p[cells(0, e)], p[cells(1, e)], p[cells(2, e)], p[cells(3, e)]};
-}
 
 /// What the predictor is linearised about and driven by; all 3 x nodes but p.
 struct MomentumFields {
@@ -43,73 +29,87 @@ struct ElementFlow {
   double stabilisation;  // t_m rho^2 [kg s/m3]
 };
 
-template <Rheology R, Stabilization S, class Tet, class Nodal>
-[[nodiscard]] ElementFlow element_flow(const R& fluid, const S& stabilization, const Tet& tet, const Nodal& a,
-                                       const Nodal& u) {
+template <Rheology R, Stabilization S>
+[[nodiscard]] ElementFlow element_flow(const R& fluid, const S& stabilization, const fem::P1Tet& tet,
+                                       const Nodal3& a, const Nodal3& u) {
   ElementFlow flow;
-  flow.a = a.rowwise().mean();
+  flow.a = mean(a);
   double shear = 0;
   if constexpr (!constant_viscosity<R>) {
-    const Eigen::Matrix3d grad_u = u * tet.grad.transpose();
-    shear = (grad_u + grad_u.transpose()).norm() / std::sqrt(2.0);  // sqrt(2 eps:eps)
+    const Matrix3 g = gradient(u, tet.grad);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) shear += (g(i, j) + g(j, i)) * (g(i, j) + g(j, i));
+    shear = std::sqrt(shear / 2);  // sqrt(2 eps:eps)
   }
   flow.viscosity = fluid.viscosity_at(shear);
-  const double speed = flow.a.norm();
-  const double along = (flow.a.transpose() * tet.grad).cwiseAbs().sum();
-  const double h = tet.size(), h_a = along > 0 ? 2 * speed / along : h;  // along the velocity
+  const double speed = length(flow.a);
+  double ahead = 0;
+  for (int i = 0; i < 4; ++i) ahead += std::abs(along(flow.a, tet.grad, i));
+  const double h = tet.size(), h_a = ahead > 0 ? 2 * speed / ahead : h;  // along the velocity
   flow.stabilisation =
       fluid.density * fluid.density * stabilization.momentum(fluid.density, flow.viscosity, h, h_a, speed);
   return flow;
 }
 
 /// M_L^{-1} int N (a . grad) u: 3 x nodes [m/s2]; inverse_mass = 1 / M_L [1/m3].
-template <class Tets, class Field>
-void smooth_convection(const Pattern& pattern, const Connectivity<4>& cells, const Tets& tets, const Field& a,
-                       const Field& u, const Eigen::VectorXd& inverse_mass, Field& out) {
+inline void smooth_convection(const Domain& domain, const Points<3>& a, const Points<3>& u, Points<3>& out) {
   out.setZero(3, u.cols());
-  pattern.for_each_cell([&](Index e) {
-    const auto& tet = tets[e];
-    const Eigen::Matrix<double, 3, 4> ae = nodal<3>(a, cells, e);
-    const Eigen::Matrix3d grad_u = nodal<3>(u, cells, e) * tet.grad.transpose() * (tet.volume / 20);
-    const Vec3 sum = ae.rowwise().sum();
-    for (int i = 0; i < 4; ++i) out.col(cells(i, e)) += grad_u * (sum + ae.col(i));
+  domain.pattern.for_each_cell([&](Index e) {
+    const fem::P1Tet& tet = domain.tets[e];
+    const Nodal3 ae = nodal(a, domain.cells, e);
+    const Matrix3 grad_u = gradient(nodal(u, domain.cells, e), tet.grad);
+    const Vec3 all = sum(ae);
+    for (int i = 0; i < 4; ++i)
+      add(out, domain.cells(i, e), tet.volume / 20,
+          product(grad_u, {all[0] + ae(0, i), all[1] + ae(1, i), all[2] + ae(2, i)}));
   });
-  out.array().rowwise() *= inverse_mass.transpose().array();
+  scale_columns(out, domain.inverse_mass);
 }
 
 /// (rho c0/dt M + C + mu K + S) u* = -rho M history + G p + f + R conv, without boundary terms.
-/// fields: MomentumFields. matrix: nodes x nodes, not symmetric; right: 3 x nodes [N].
-template <Rheology R, Stabilization S, class Tets, class Fields>
-void assemble_momentum(const Pattern& pattern, const Connectivity<4>& cells, const Tets& tets, const R& fluid,
-                       const S& stabilization, const Fields& fields, la::RowMatrix& matrix,
-                       Points<3>& right) {
-  pattern.clear(matrix);
+/// matrix: nodes x nodes, not symmetric; right: 3 x nodes [N].
+template <Rheology R, Stabilization S>
+void assemble_momentum(const Domain& domain, const R& fluid, const S& stabilization,
+                       const MomentumFields& fields, la::RowMatrix& matrix, Points<3>& right) {
+  const Connectivity<4>& cells = domain.cells;
+  domain.pattern.clear(matrix);
   right.setZero(3, fields.a.cols());
   const bool forced = fields.force.cols() > 0;
-  pattern.for_each_cell([&](Index e) {
-    const auto& tet = tets[e];
+  domain.pattern.for_each_cell([&](Index e) {
+    const fem::P1Tet& tet = domain.tets[e];
     const double V = tet.volume, rho = fluid.density;
-    const Eigen::Matrix<double, 3, 4> a = nodal<3>(fields.a, cells, e);
-    const ElementFlow flow = element_flow(fluid, stabilization, tet, a, nodal<3>(fields.u, cells, e));
-    const Eigen::Matrix4d along = tet.grad.transpose() * a;  // (j, k): grad N_j . a_k
-    const Eigen::Vector4d advection = along.rowwise().sum(), mean = advection / 4;
-    const double mass = rho * fields.rate * V / 20;
-    Eigen::Matrix4d Ke = flow.viscosity * V * (tet.grad.transpose() * tet.grad);  // mu (grad N_i, grad N_j)
-    Ke += flow.stabilisation * V * (mean * mean.transpose());  // t_m rho^2 (a.grad N_i, a.grad N_j)
-    Ke += rho * V / 20 * along.transpose();                    // rho (N_i, a.grad N_j)
-    Ke.rowwise() += (rho * V / 20 * advection).transpose();
-    Ke.array() += mass;
-    Ke.diagonal().array() += mass;
-    pattern.add(e, Ke, matrix);
+    const Nodal3 a = nodal(fields.a, cells, e);
+    const ElementFlow flow = element_flow(fluid, stabilization, tet, a, nodal(fields.u, cells, e));
+    double advection[4][4], mean_advection[4];  // a_k . grad N_j, with their mean over k
+    for (int j = 0; j < 4; ++j) {
+      for (int k = 0; k < 4; ++k)
+        advection[j][k] = a(0, k) * tet.grad(0, j) + a(1, k) * tet.grad(1, j) + a(2, k) * tet.grad(2, j);
+      mean_advection[j] = (advection[j][0] + advection[j][1] + advection[j][2] + advection[j][3]) / 4;
+    }
+    const double mass = rho * fields.rate * V / 20, convection = rho * V / 20;
+    const double diffusion = flow.viscosity * V, wiggle = flow.stabilisation * V;
+    Eigen::Matrix4d Ke;
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i)
+        Ke(i, j) = diffusion * (tet.grad(0, i) * tet.grad(0, j) + tet.grad(1, i) * tet.grad(1, j) +
+                                tet.grad(2, i) * tet.grad(2, j)) +   // mu (grad N_i, grad N_j)
+                   wiggle * mean_advection[i] * mean_advection[j] +  // t_m rho^2 (a.grad N_i, a.grad N_j)
+                   convection * (4 * mean_advection[j] + advection[j][i]) +  // rho (N_i, a.grad N_j)
+                   (i == j ? 2 * mass : mass);
+    domain.pattern.add(e, Ke, matrix);
 
-    Eigen::Matrix<double, 3, 4> source = -rho * nodal<3>(fields.history, cells, e);
-    if (forced) source += nodal<3>(fields.force, cells, e);
-    const Vec3 total = source.rowwise().sum();
-    const double pressure = V * nodal(fields.p, cells, e).mean();
-    const Vec3 smooth = flow.stabilisation * V * nodal<3>(fields.smoothed, cells, e).rowwise().mean();
+    Nodal3 source = nodal(fields.history, cells, e);
+    for (int k = 0; k < 12; ++k) source.data()[k] *= -rho;
+    if (forced) {
+      const Nodal3 force = nodal(fields.force, cells, e);
+      for (int k = 0; k < 12; ++k) source.data()[k] += force.data()[k];
+    }
+    const Vec3 total = sum(source), smooth = mean(nodal(fields.smoothed, cells, e));
+    const double pressure = V * mean(nodal(fields.p, cells, e));
     for (int i = 0; i < 4; ++i)
-      right.col(cells(i, e)) +=
-          V / 20 * (total + source.col(i)) + pressure * tet.grad.col(i) + mean[i] * smooth;
+      for (int c = 0; c < 3; ++c)
+        right(c, cells(i, e)) += V / 20 * (total[c] + source(c, i)) + pressure * tet.grad(c, i) +
+                                 wiggle * mean_advection[i] * smooth[c];
   });
 }
 

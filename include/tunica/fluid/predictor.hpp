@@ -26,10 +26,8 @@ class Predictor {
   SolveReport solve(const Domain& domain, const R& fluid, const S& stabilization,
                     const MomentumFields& fields, const Eigen::VectorXd& loads, la::KrylovOptions options,
                     Points<3>& u) {
-    smooth_convection(domain.pattern, domain.cells, domain.tets, fields.a, fields.u, domain.inverse_mass,
-                      smoothed_);
-    assemble_momentum(domain.pattern, domain.cells, domain.tets, fluid, stabilization, fields, matrix_,
-                      right_);
+    smooth_convection(domain, fields.a, fields.u, smoothed_);
+    assemble_momentum(domain, fluid, stabilization, fields, matrix_, right_);
     add_boundary_terms(domain.pattern, domain.conditions, domain.position, fields.a, loads, fluid.density,
                        matrix_, right_);
     prescribe(domain.conditions, u);

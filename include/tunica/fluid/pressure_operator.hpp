@@ -37,14 +37,17 @@ class PressureOperator {
     pattern.for_each_cell([&](Index e) {
       const fem::P1Tet& tet = tets[e];
       const double t = tau[static_cast<std::size_t>(e)], quarter = t * tet.volume / 4;
-      const Eigen::Matrix4d stiffness = (gamma + t) * tet.volume * (tet.grad.transpose() * tet.grad);
+      const double weight = (gamma + t) * tet.volume;
       const Index* position = pattern.positions(e);
       for (int a = 0; a < 4; ++a) {
+        const double *ga = tet.grad.data() + 3 * a, *gb = tet.grad.data();
         lumped_[cells(a, e)] += quarter;
-        for (int b = 0; b < 4; ++b, ++position) {
-          forward_.col(*position).head<3>() += quarter * tet.grad.col(b);
-          forward_(3, *position) += stiffness(a, b);
-          backward_.col(*position) += quarter * tet.grad.col(a);
+        for (int b = 0; b < 4; ++b, ++position, gb += 3) {
+          double* forward = forward_.data() + 4 * std::ptrdiff_t{*position};
+          double* backward = backward_.data() + 3 * std::ptrdiff_t{*position};
+          forward[0] += quarter * gb[0], forward[1] += quarter * gb[1], forward[2] += quarter * gb[2];
+          backward[0] += quarter * ga[0], backward[1] += quarter * ga[1], backward[2] += quarter * ga[2];
+          forward[3] += weight * (ga[0] * gb[0] + ga[1] * gb[1] + ga[2] * gb[2]);
         }
       }
     });
@@ -71,19 +74,27 @@ class PressureOperator {
   template <class Vector>
   void apply_all(const Vector& x, Vector& y) const {
     const int *outer = preconditioning_.outerIndexPtr(), *inner = preconditioning_.innerIndexPtr();
+    using Four = Eigen::Matrix<typename Vector::Scalar, 4, 1>;
+    const double *forward = forward_.data(), *backward = backward_.data();
+    double* projected = projected_.data();
     y.resize(x.size());
     parallel_chunks(x.size(), la::row_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       for (std::ptrdiff_t i = begin; i < end; ++i) {
-        Eigen::Vector4d sum = Eigen::Vector4d::Zero();  // of Q^T x and (gamma L + L_t) x
-        for (int k = outer[i]; k < outer[i + 1]; ++k) sum += forward_.col(k) * x[inner[k]];
-        projected_.col(i) = lumped_[i] * sum.head<3>();
+        Four sum = Four::Zero();  // of Q^T x and (gamma L + L_t) x
+        for (int k = outer[i]; k < outer[i + 1]; ++k)
+          sum += Eigen::Map<const Four, Eigen::AlignedMax>(forward + 4 * std::ptrdiff_t{k}) * x[inner[k]];
+        for (int c = 0; c < 3; ++c) projected[3 * i + c] = lumped_[i] * sum[c];
         y[i] = sum[3];
       }
     });
     parallel_chunks(x.size(), la::row_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       for (std::ptrdiff_t i = begin; i < end; ++i) {
         double sum = 0;
-        for (int k = outer[i]; k < outer[i + 1]; ++k) sum += backward_.col(k).dot(projected_.col(inner[k]));
+        for (int k = outer[i]; k < outer[i + 1]; ++k) {
+          const double *entry = backward + 3 * std::ptrdiff_t{k},
+                       *q = projected + 3 * std::ptrdiff_t{inner[k]};
+          sum += entry[0] * q[0] + entry[1] * q[1] + entry[2] * q[2];
+        }
         y[i] -= sum;
       }
     });

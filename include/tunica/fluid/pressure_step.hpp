@@ -21,8 +21,8 @@ namespace tunica::fluid {
 /// A template of its scalar, so that its parts cost the scenes that take a step and no reader of the header.
 template <class Scalar = double>
 class PressureStep {
-  using Vector = Eigen::VectorX<Scalar>;                   // nodes
-  using Field = Eigen::Matrix<Scalar, 3, Eigen::Dynamic>;  // 3 x nodes
+  using Vector = Eigen::VectorX<Scalar>;  // nodes
+  using Field = Points<3>;                // 3 x nodes
 
  public:
   PressureStep(const Pattern& pattern, const Field& x, double volume)
@@ -35,11 +35,11 @@ class PressureStep {
     gamma_ = gamma;
     tau_.resize(static_cast<std::size_t>(domain.cells.cols()));
     domain.pattern.for_each_cell([&](Index e) {
-      const Eigen::Matrix<double, 3, 4> ae = nodal<3>(a, domain.cells, e);
+      const fem::P1Tet& tet = domain.tets[e];
       const ElementFlow flow =
-          element_flow(fluid, stabilization, domain.tets[e], ae, nodal<3>(u, domain.cells, e));
+          element_flow(fluid, stabilization, tet, nodal(a, domain.cells, e), nodal(u, domain.cells, e));
       tau_[static_cast<std::size_t>(e)] =
-          stabilization.mass(fluid.density, flow.viscosity, domain.tets[e].size(), flow.a.norm());
+          stabilization.mass(fluid.density, flow.viscosity, tet.size(), length(flow.a));
     });
     prepare(domain);
   }
@@ -99,7 +99,8 @@ class PressureStep {
     gradient(domain, increment);
     const auto& fixed = domain.conditions.velocity_flags();
     for (Eigen::Index i = 0; i < u.cols(); ++i)
-      if (!fixed[static_cast<std::size_t>(i)]) u.col(i) -= gamma_ * domain.inverse_mass[i] * gradient_.col(i);
+      if (!fixed[static_cast<std::size_t>(i)])
+        for (int c = 0; c < 3; ++c) u(c, i) -= gamma_ * domain.inverse_mass[i] * gradient_(c, i);
     // p = p^k + dp - chi mu M_L^-1 (D u* + T (p^k + dp)). The stabilised divergence, not D u* alone: where
     // dp is prescribed the pressure moves until continuity holds in those rows too, and then it rests.
     p += increment + rotational * domain.inverse_mass.cwiseProduct(reaction_ + gamma_ * laplacian_);
@@ -129,7 +130,7 @@ class PressureStep {
  private:
   struct TwoLevel {
     const la::IncompleteCholesky& fine;
-    const CoarseSpace& coarse;
+    const CoarseSpace<Scalar>& coarse;
     void apply(const Vector& r, Vector& z) const { fine.apply(r, z), coarse.add(r, z); }
   };
 
@@ -145,9 +146,11 @@ class PressureStep {
   void divergence(const Domain& domain, const Field& u) {
     divergence_.setZero(u.cols());
     domain.pattern.for_each_cell([&](Index e) {
-      const auto& tet = domain.tets[e];
-      const double q = tet.volume / 4 * nodal<3>(u, domain.cells, e).cwiseProduct(tet.grad).sum();
-      for (int i = 0; i < 4; ++i) divergence_[domain.cells(i, e)] += q;
+      const fem::P1Tet& tet = domain.tets[e];
+      const Nodal3 ue = nodal(u, domain.cells, e);
+      double q = 0;
+      for (int k = 0; k < 12; ++k) q += ue.data()[k] * tet.grad.data()[k];
+      for (int i = 0; i < 4; ++i) divergence_[domain.cells(i, e)] += tet.volume / 4 * q;
     });
   }
 
@@ -155,50 +158,57 @@ class PressureStep {
   void gradient(const Domain& domain, const Vector& p) {
     gradient_.setZero(3, p.size()), laplacian_.setZero(p.size());
     domain.pattern.for_each_cell([&](Index e) {
-      const auto& tet = domain.tets[e];
-      const Vec3 g = tet.volume * (tet.grad * nodal(p, domain.cells, e));
+      const fem::P1Tet& tet = domain.tets[e];
+      const Vec3 g = fluid::gradient(nodal(p, domain.cells, e), tet.grad);
       for (int i = 0; i < 4; ++i) {
-        gradient_.col(domain.cells(i, e)) += g / 4;
-        laplacian_[domain.cells(i, e)] += tet.grad.col(i).dot(g);
+        add(gradient_, domain.cells(i, e), tet.volume / 4, g);
+        laplacian_[domain.cells(i, e)] += tet.volume * along(g, tet.grad, i);
       }
     });
   }
 
   /// stabilised_ = int tau grad N . (r - P r), r = grad p - force.
   void stabilise(const Domain& domain, const Vector& p, const Field& force) {
-    const auto residual = [&](Index e) -> Vec3 {
-      Vec3 r = domain.tets[e].grad * nodal(p, domain.cells, e);
-      if (force.cols() > 0) r -= nodal<3>(force, domain.cells, e).rowwise().mean();
+    const auto residual = [&](Index e) {
+      Vec3 r = fluid::gradient(nodal(p, domain.cells, e), domain.tets[e].grad);
+      if (force.cols() > 0) {
+        const Vec3 f = mean(nodal(force, domain.cells, e));
+        for (int c = 0; c < 3; ++c) r[c] -= f[c];
+      }
       return r;
     };
     gradient_.setZero(3, p.size());
     domain.pattern.for_each_cell([&](Index e) {
-      const Vec3 r = tau_[static_cast<std::size_t>(e)] * domain.tets[e].volume / 4 * residual(e);
-      for (int i = 0; i < 4; ++i) gradient_.col(domain.cells(i, e)) += r;
+      const double weight = tau_[static_cast<std::size_t>(e)] * domain.tets[e].volume / 4;
+      const Vec3 r = residual(e);
+      for (int i = 0; i < 4; ++i) add(gradient_, domain.cells(i, e), weight, r);
     });
-    gradient_.array().rowwise() *= operator_.inverse_mass().transpose().array();
+    scale_columns(gradient_, operator_.inverse_mass());
     stabilised_.setZero(p.size());
     domain.pattern.for_each_cell([&](Index e) {
-      const Vec3 smooth = nodal<3>(gradient_, domain.cells, e).rowwise().mean();
-      const Vec3 r = tau_[static_cast<std::size_t>(e)] * domain.tets[e].volume * (residual(e) - smooth);
-      for (int i = 0; i < 4; ++i) stabilised_[domain.cells(i, e)] += domain.tets[e].grad.col(i).dot(r);
+      const fem::P1Tet& tet = domain.tets[e];
+      const double weight = tau_[static_cast<std::size_t>(e)] * tet.volume;
+      const Vec3 smooth = mean(nodal(gradient_, domain.cells, e)), r = residual(e);
+      const Vec3 rough(r[0] - smooth[0], r[1] - smooth[1], r[2] - smooth[2]);
+      for (int i = 0; i < 4; ++i) stabilised_[domain.cells(i, e)] += weight * along(rough, tet.grad, i);
     });
   }
 
   /// Without prescribed pressure what flows in must flow out, up to the error of the boundary data.
   [[nodiscard]] bool leaks(const Domain& domain, const Field& u) const {
     constexpr double tolerated = 0.05;  // nodal values of a smooth divergence-free field on a coarse mesh
-    double through = 0;
+    double through = 0, sum = 0, round_off = 0;
     for (const Condition& c : domain.conditions.list())
       for (Eigen::Index f = 0; f < c.faces.cols(); ++f)
-        through += std::abs(Conditions::flux(domain.position, c.faces.col(f), u));
-    const double round_off = 1e-8 * divergence_.template lpNorm<1>();
-    return !(std::abs(divergence_.sum()) <= tolerated * through + round_off);
+        through += std::abs(Conditions::flux(domain.position, c.faces, u, f));
+    for (Eigen::Index i = 0; i < divergence_.size(); ++i)
+      sum += divergence_[i], round_off += 1e-8 * std::abs(divergence_[i]);
+    return !(std::abs(sum) <= tolerated * through + round_off);
   }
 
   PressureOperator operator_;
   la::IncompleteCholesky cholesky_;
-  CoarseSpace coarse_;
+  CoarseSpace<Scalar> coarse_;
   std::vector<double> tau_;  // [m3 s/kg] a cell
   double gamma_ = 0;         // dt / (rho c0) [m3 s/kg]
   Vector divergence_, stabilised_, right_, product_, start_, reaction_, laplacian_;

@@ -146,7 +146,8 @@ class Projection {
     next_u_ = u_;
     conditions_.impose_velocity(state_.position, w_, t + dt, next_u_);
     pressure_step_.assemble_laplacian(domain, 1);
-    const Points<3> rate = (next_u_ - u_) / dt;
+    Points<3> rate;
+    combine(1 / dt, next_u_, -1 / dt, u_, rate);
     const Eigen::VectorXd right = initial_source(domain, fluid_.density, u_, rate, force_);
     conditions_.impose_pressure(state_.position, t, p_);
     report = pressure_step_.solve(domain, right, 0, zero, options, p_);
@@ -170,13 +171,14 @@ class Projection {
       if (!sound) return {Status::diverged, 0, 0};
       lump();
       // w: the difference that differentiates u too; with (x^{n+1} - x^n)/dt the scheme is of first order
-      w_ = bdf.now * next_ + bdf.last * state_.position + bdf.before * state_.position_old;
+      combine(bdf.last, state_.position, bdf.before, state_.position_old, w_);
+      combine(bdf.now, next_, 1, w_, w_);
     }
     const double t = state_.time + dt;
     const Domain domain = this->domain(next_);
-    u_ = bdf.extrapolate_last * state_.velocity + bdf.extrapolate_before * state_.velocity_old;
+    combine(bdf.extrapolate_last, state_.velocity, bdf.extrapolate_before, state_.velocity_old, u_);
     conditions_.impose_velocity(next_, w_, t, u_);
-    history_ = bdf.last * state_.velocity + bdf.before * state_.velocity_old;
+    combine(bdf.last, state_.velocity, bdf.before, state_.velocity_old, history_);
     p_ = state_.pressure;
     evaluate_force(t, next_);
     // The first pass starts from p^n: the traction that goes with it is that of t^n. What the prescribed
@@ -186,11 +188,12 @@ class Projection {
     increment_ = prescribed_now_ - prescribed_;
     guess_ = first ? Eigen::VectorXd(increment_) : Eigen::VectorXd(state_.pressure - state_.pressure_old);
 
-    a_ = u_ - w_;
+    combine(1, u_, -1, w_, a_);
     pressure_step_.assemble(domain, fluid_, stabilization_, a_, u_, 1 / (fluid_.density * bdf.now));
     SolveReport report{Status::converged, 0, 0};
     for (int pass = 0; pass < options_.passes; ++pass) {
-      if (pass > 0) a_ = u_ - w_, increment_.setZero(), guess_.setZero(), prescribed_ = prescribed_now_;
+      if (pass > 0)
+        combine(1, u_, -1, w_, a_), increment_.setZero(), guess_.setZero(), prescribed_ = prescribed_now_;
       SolveReport solved = predictor_.solve(
           domain, fluid_, stabilization_, {a_, u_, history_, p_, force_, predictor_.smoothed(), bdf.now},
           prescribed_, {.tolerance = options_.momentum_tolerance, .max_iterations = options_.max_iterations},
@@ -204,19 +207,19 @@ class Projection {
       report.status = solved.status;
       if (!solved) return report;
     }
-    if (!u_.allFinite() || !p_.allFinite()) return {Status::diverged, report.iterations, report.residual};
+    if (!finite(u_.data(), u_.size()) || !finite(p_.data(), p_.size()))
+      return {Status::diverged, report.iterations, report.residual};
     state_.mass = pressure_step_.balance(domain, u_, w_);
     if (!interface_.nodes().empty()) {
-      next_u_ = bdf.now * u_ + history_;
-      a_ = u_ - w_;
-      state_.force =
-          interface_.evaluate(cells_, tets_, fluid_, stabilization_, conditions_, next_, prescribed_now_,
-                              ForceFields{.a = a_,
-                                          .u = u_,
-                                          .rate = next_u_,
-                                          .p = p_,
-                                          .force = force_,
-                                          .smoothed = predictor_.smoothed()});
+      combine(bdf.now, u_, 1, history_, next_u_);
+      combine(1, u_, -1, w_, a_);
+      state_.force = interface_.evaluate(domain, fluid_, stabilization_, prescribed_now_,
+                                         ForceFields{.a = a_,
+                                                     .u = u_,
+                                                     .rate = next_u_,
+                                                     .p = p_,
+                                                     .force = force_,
+                                                     .smoothed = predictor_.smoothed()});
     }
     state_.velocity_old.swap(state_.velocity), state_.velocity = u_;
     state_.pressure_old.swap(state_.pressure), state_.pressure = p_;
@@ -267,7 +270,8 @@ class Projection {
 
   void evaluate_force(double t, const Points<3>& x) {
     force_.resize(3, forced_ ? x.cols() : 0);
-    for (Eigen::Index i = 0; i < force_.cols(); ++i) force_.col(i) = body_force_(x.col(i), t);
+    for (Eigen::Index i = 0; i < force_.cols(); ++i)
+      set_column(force_, static_cast<Index>(i), body_force_(column(x, static_cast<Index>(i)), t));
   }
 
   R fluid_;

@@ -14,18 +14,22 @@ namespace tunica::fluid {
   Eigen::VectorXd right = Eigen::VectorXd::Zero(u.cols());
   for (Index e = 0; e < domain.cells.cols(); ++e) {
     const fem::P1Tet& tet = domain.tets[e];
-    const Eigen::Matrix<double, 3, 4> ue = nodal<3>(u, domain.cells, e);
-    Vec3 f = -density * (ue * tet.grad.transpose()) * ue.rowwise().mean();
-    if (force.cols() > 0) f += nodal<3>(force, domain.cells, e).rowwise().mean();
-    for (int i = 0; i < 4; ++i) right[domain.cells(i, e)] += tet.volume * tet.grad.col(i).dot(f);
+    const Nodal3 ue = nodal(u, domain.cells, e);
+    Vec3 f = product(gradient(ue, tet.grad), mean(ue));
+    for (int c = 0; c < 3; ++c) f[c] *= -density;
+    if (force.cols() > 0) {
+      const Vec3 volume_force = mean(nodal(force, domain.cells, e));
+      for (int c = 0; c < 3; ++c) f[c] += volume_force[c];
+    }
+    for (int i = 0; i < 4; ++i) right[domain.cells(i, e)] += tet.volume * along(f, tet.grad, i);
   }
   for (const Condition& c : domain.conditions.list()) {
     if (c.kind != Kind::velocity) continue;
     for (Eigen::Index k = 0; k < c.faces.cols(); ++k) {
       const Vec3 n = Conditions::area_vector(domain.position, c.faces, k);
-      const Vec3 normal(n.dot(rate.col(c.faces(0, k))), n.dot(rate.col(c.faces(1, k))),
-                        n.dot(rate.col(c.faces(2, k))));
-      const Vec3 load = density * face_load(1, normal);
+      Vec3 normal;
+      for (int i = 0; i < 3; ++i) normal[i] = dot(n, column(rate, c.faces(i, k)));
+      const Vec3 load = face_load(density, normal);
       for (int i = 0; i < 3; ++i) right[c.faces(i, k)] -= load[i];
     }
   }

@@ -57,8 +57,12 @@ class Laplace {
     auto matrix = assembly.matrix();
     assembly.for_each_cell([&](Index e) {
       const fem::P1Tet& tet = tets[e];
-      const double gamma = std::pow(mean / tet.volume, options.stiffening);
-      const Eigen::Matrix4d Ke = gamma * tet.volume * (tet.grad.transpose() * tet.grad);
+      const double weight = std::pow(mean / tet.volume, options.stiffening) * tet.volume;
+      Eigen::Matrix4d Ke;  // gamma (grad N_i, grad N_j)
+      for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i)
+          Ke(i, j) = weight * (tet.grad(0, i) * tet.grad(0, j) + tet.grad(1, i) * tet.grad(1, j) +
+                               tet.grad(2, i) * tet.grad(2, j));
       assembly.add(e, Ke, matrix);
     });
     volume_ = InterleavedCholesky(matrix, known);
@@ -91,12 +95,19 @@ class Laplace {
     const fem::Assembly<mesh::Tri3, 1> assembly(surface);
     auto matrix = assembly.matrix();
     for (Index f = 0; f < surface.cell_count(); ++f) {
-      Eigen::Matrix3d edge;  // opposite to each corner
+      double edge[3][3], product[3][3];  // edges opposite to each corner
       for (int i = 0; i < 3; ++i)
-        edge.col(i) =
-            mesh.nodes.col(patch.faces((i + 2) % 3, f)) - mesh.nodes.col(patch.faces((i + 1) % 3, f));
-      const double area = 0.5 * Vec3(edge.col(0)).cross(Vec3(edge.col(1))).norm();
-      const Eigen::Matrix3d Ke = edge.transpose() * edge / (4 * area);  // (grad N_i, grad N_j)
+        for (int c = 0; c < 3; ++c)
+          edge[i][c] =
+              mesh.nodes(c, patch.faces((i + 2) % 3, f)) - mesh.nodes(c, patch.faces((i + 1) % 3, f));
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          product[i][j] = edge[i][0] * edge[j][0] + edge[i][1] * edge[j][1] + edge[i][2] * edge[j][2];
+      const double four_areas =  // |e0 x e1| = 2 area
+          2 * std::sqrt(product[0][0] * product[1][1] - product[0][1] * product[0][1]);
+      Eigen::Matrix<double, 3, 3> Ke;  // (grad N_i, grad N_j)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) Ke(i, j) = product[i][j] / four_areas;
       assembly.add(f, Ke, matrix);
     }
     return InterleavedCholesky(matrix, known);
