@@ -191,6 +191,36 @@ TEST_SUITE("hard") {
     CHECK(std::abs(stiff.u - soft.u) < 5e-3 * soft.u);
   }
 
+  TEST_CASE("solid: bending of a quasi-incompressible strip is as stiff as its layers make it") {
+    // The mean dilatation of a layer is held, its slope through the layer is not: n layers have the bending
+    // stiffness 1 - 2/(3 n^2) of the strip's 4 mu t^3/12; cells of length a add (a/t)^2/4 by their shear.
+    constexpr double t = 1.5e-3, length = 30e-3, width = 1e-3, mu = 348e3;
+    const auto stiffness = [&](int layers, int along) {
+      const auto mesh = meshing::box_hexes(
+          meshing::Block{.cells = {along, 1, layers}, .lo = Vec3::Zero(), .hi = Vec3(length, width, t)});
+      Statics strip{mesh, Hyperelastic{NeoHooke{.c10 = mu / 2}, Quadratic{.kappa = 1000 * mu}}};
+      for (const char* side : {"y0", "y1"}) strip.fix(mesh.patch(side), Axis::y);
+      strip.fix(mesh.patch("x0"));
+      const double load = 1e-6 * mu * width * t;  // small: linear
+      const auto tip = mesh::patch_nodes(mesh.patch("x1"));
+      for (const Index n : tip) strip.force(n, Vec3(0, 0, load / static_cast<double>(tip.size())));
+      REQUIRE(strip.solve());
+      double u = 0;
+      for (const Index n : tip) u += strip.displacement()(2, n) / static_cast<double>(tip.size());
+      // u = F L^3 / (3 E' I), E' = 4 mu in plane strain; the shear of so long a strip is below 1 %
+      return load * std::pow(length, 3) / (3 * u) / (4 * mu * width * std::pow(t, 3) / 12);
+    };
+    for (const int layers : {1, 2, 4})
+      for (const int along : {15, 30, 120}) {
+        const double a = length / along;
+        const double expected = 1 - 2.0 / (3 * layers * layers) + 0.25 * (a / t) * (a / t);
+        const double found = stiffness(layers, along);
+        MESSAGE(layers << " layers of cells of " << a * 1e3 << " mm: bending stiffness " << found
+                       << " of the exact one, expected " << expected);
+        CHECK(found == doctest::Approx(expected).epsilon(0.05));
+      }
+  }
+
   TEST_CASE("solid: a violent blow with few iterations allowed goes on in halved steps") {
     const auto mesh = meshing::box_hexes(meshing::Block{.cells = {2, 2, 4}, .hi = Vec3(0.01, 0.01, 0.02)});
     const Hyperelastic law{Yeoh{.c10 = 174e3, .c20 = 1880e3}, Quadratic{.kappa = 348e6}};
