@@ -12,13 +12,12 @@
 #include "tunica/image/sampling.hpp"
 #include "tunica/io/vtk_image.hpp"
 #include "tunica/mesh/topology.hpp"
+#include "tunica/meshing/cavities.hpp"
+#include "tunica/meshing/contour_triangles.hpp"
 #include "tunica/meshing/cut.hpp"
-#include "tunica/meshing/dual_contouring.hpp"
-#include "tunica/meshing/hermite_field.hpp"
 #include "tunica/meshing/marching_cubes.hpp"
 #include "tunica/meshing/remesh.hpp"
 #include "tunica/meshing/smooth.hpp"
-#include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/tetrahedra.hpp"
 
 #include <algorithm>
@@ -120,19 +119,38 @@ namespace detail {
   return h;
 }
 
+/// The closed surface of the region, and what the report says of its borders with the image.
 [[nodiscard]] inline mesh::Surface contour(const image::Image<float>& image, const image::Region& region,
                                            const ImageOptions& o, Json& report) {
-  if (o.surface == Contourer::dual_contouring)
-    return meshing::split_quads(
-        meshing::dual_contour(meshing::hermite_of_image(image, region.mask.inside, *o.iso)));
-  auto contour = meshing::marching_cubes(image, region.mask.inside, *o.iso);
-  report["borders"] = Json(std::vector<double>{});
+  auto contour = o.surface == Contourer::dual_contouring
+                     ? meshing::dual_contour_image(image, region.mask.inside, *o.iso)
+                     : meshing::marching_cubes(image, region.mask.inside, *o.iso);
+  report = Json(std::vector<double>{});
   for (const auto& b : contour.borders) {
     Json j;
     j["name"] = b.name, j["area"] = b.area, j["centre"] = b.centre;
-    report["borders"].push(std::move(j));
+    report.push(std::move(j));
   }
   return std::move(contour.surface);
+}
+
+/// Fills the cavities that no triangle of that edge length can line: each would be lined by tiny ones.
+[[nodiscard]] inline mesh::Surface without_specks(mesh::Surface s, double edge, Json& figures, Json& report) {
+  const auto topology = mesh::topology(s);
+  auto result = meshing::fill_cavities(std::move(s), topology, edge * edge * edge);
+  meshing::Cavity largest;
+  double volume = 0;
+  for (const auto& c : result.filled) {
+    volume += c.volume;
+    if (c.volume > largest.volume) largest = c;
+  }
+  figures["count"] = result.filled.size(), figures["volume"] = volume;
+  if (!result.filled.empty())
+    warn(report, count_text(result.filled.size(), "cavity", "cavities") +
+                     " smaller than the cube of the edge length filled, " + short_text(volume) +
+                     " in all; the largest of " + short_text(largest.volume) + " is at (" +
+                     place_text(largest.centre) + "). --edge 0 keeps them");
+  return std::move(result.surface);
 }
 
 }  // namespace detail
@@ -154,11 +172,14 @@ inline constexpr int image_stages = 7;
   for (std::size_t f = 0; f < 6; ++f)
     if (region.touches[f]) segment["touches"].push(image::face_names[f]);
 
-  s = stage("contour", [&] { return detail::contour(image, region, o, report["contour"]); });
+  const double edge = o.edge.value_or(1.5 * detail::largest_spacing(image));
+  Json borders, specks;
+  s = stage("contour", [&] {
+    return detail::without_specks(detail::contour(image, region, o, borders), edge, specks, report);
+  });
   const auto contoured = mesh::topology(s);
-  const Json borders = report["contour"]["borders"];
   report["contour"] = surface_figures(s, contoured);
-  report["contour"]["borders"] = borders;
+  report["contour"]["borders"] = borders, report["contour"]["filled_cavities"] = specks;
   tell_topology(s, contoured, report);
 
   stage("smooth", [&] {
@@ -184,7 +205,6 @@ inline constexpr int image_stages = 7;
   });
 
   stage("remesh", [&] {
-    const double edge = o.edge.value_or(1.5 * detail::largest_spacing(image));
     report["edge"] = edge;
     if (!(edge > 0)) return;
     auto remeshed = meshing::remesh(s, {.edge = edge});
@@ -196,7 +216,7 @@ inline constexpr int image_stages = 7;
   if (made.components.size() > contoured.components.size())
     for (const auto& c : made.components)
       warn(report, "the cuts leave " + std::to_string(made.components.size()) + " parts; one of volume " +
-                       image::number_text(c.volume) + " is at (" + place_text(c.centre) + ")");
+                       short_text(c.volume) + " is at (" + place_text(c.centre) + ")");
   for (std::size_t r = 0; r < s.region_names.size(); ++r)
     if (s.region_names[r].rfind(meshing::border_prefix, 0) == 0)
       warn(report, "the vessel leaves the image: patch " + std::to_string(r) + " is its flat end at " +

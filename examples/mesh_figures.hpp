@@ -4,7 +4,6 @@
 
 #include "cli.hpp"
 #include "json.hpp"
-#include "tunica/image/number_text.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/mesh/topology.hpp"
 #include "tunica/meshing/handles.hpp"
@@ -45,6 +44,18 @@ inline void warn(Json& report, const std::string& sentence) {
   return j;
 }
 
+/// "1.24": three digits, for sentences.
+[[nodiscard]] inline std::string short_text(double x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", x);
+  return text.data();
+}
+
+/// "1 cavity", "2 cavities".
+[[nodiscard]] inline std::string count_text(std::size_t n, const std::string& one, const std::string& many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
 /// "221.484, 150.293, 22.501".
 [[nodiscard]] inline std::string place_text(const Vec3& x) {
   std::array<char, 100> text{};
@@ -58,15 +69,15 @@ inline void tell_topology(const mesh::Surface& s, const mesh::Topology& t, Json&
   if (t.genus() > 0)
     for (const auto& h : meshing::handles(s, t)) {
       warn(report, "the surface has a handle at (" + place_text(h.place) + "), its ring is " +
-                       image::number_text(h.length) + " long");
+                       short_text(h.length) + " long");
       Json j;
       j["place"] = h.place, j["length"] = h.length;
       report["handles"].push(std::move(j));
     }
   for (const auto& c : t.components)
     if (c.volume < 0)
-      warn(report, "there is a cavity of volume " + image::number_text(-c.volume) + " at (" +
-                       place_text(c.centre) + ")");
+      warn(report,
+           "there is a cavity of volume " + short_text(-c.volume) + " at (" + place_text(c.centre) + ")");
 }
 
 [[nodiscard]] inline Json fill_figures(const meshing::FillReport& r, const mesh::TetMesh& tets) {

@@ -200,6 +200,38 @@ TEST_SUITE("job") {
     refused(*good, " --iso 1 -o b.vtk", 2, "-o");
   }
 
+  TEST_CASE("image_to_mesh: specks of noise within the vessel are filled and told") {
+    const auto image = shared("data/aorta_tree.vtk"), checker = shared("tools/check_mesh.py");
+    if (!image || !checker || program("image_to_mesh").empty()) return;
+    for (const std::string how : {"", " --surface dual-contouring"}) {
+      CAPTURE(how);
+      const Folder folder;
+      const Run r = mesh(folder, *image, " --iso 1300" + how);
+      INFO(r.outcome.err);
+      REQUIRE(r.outcome.status == 0);
+      const double volume = r({"fill", "volume"}), edge = r({"edge"});
+      MESSAGE(r({"contour", "filled_cavities", "count"}), " cavities filled, ", r({"fill", "tetrahedra"}),
+              " tetrahedra of genus ", r({"surface", "genus"}), ", smallest dihedral angle ",
+              r({"fill", "smallest_dihedral_degrees"}), " degrees");
+      CHECK(has(r.outcome.err, " cavities smaller than the cube of the edge length filled, "));
+      CHECK(r({"contour", "filled_cavities", "count"}) > 0);
+      CHECK(r({"contour", "filled_cavities", "volume"}) < 0.001 * volume);
+      CHECK(r({"surface", "genus"}) == r({"contour", "genus"}));
+      // regular tetrahedra of that edge: V / (edge^3 / (6 sqrt 2)); at most three times as many
+      CHECK(r({"fill", "tetrahedra"}) < 3 * volume * 6 * std::sqrt(2.0) / (edge * edge * edge));
+      CHECK(r({"fill", "inverted"}) == 0);
+      for (const std::string border : {"border y1", "border z0", "border z1"})
+        CHECK(has(r.outcome.err, "is its flat end at " + border));
+      CHECK(faults(*checker, folder, "a.vtu --surface a.surface.vtp --tol 0") == "");
+    }
+    const Folder folder;
+    const Run r = mesh(folder, *image, " --iso 1300 --edge 0 --smooth 0 --fill none");
+    REQUIRE(r.outcome.status == 0);
+    CHECK(r({"contour", "filled_cavities", "count"}) == 0);
+    CHECK(r({"surface", "components"}) > 1);
+    CHECK(has(r.outcome.err, "warning: there is a cavity of volume "));
+  }
+
   TEST_CASE("image_to_mesh: controls are meshed and named after their image") {
     const auto bad = shared("data/bad"), checker = shared("tools/check_mesh.py");
     if (!bad || !checker || program("image_to_mesh").empty()) return;
