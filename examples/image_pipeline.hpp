@@ -15,10 +15,12 @@
 #include "tunica/meshing/cavities.hpp"
 #include "tunica/meshing/contour_triangles.hpp"
 #include "tunica/meshing/cut.hpp"
+#include "tunica/meshing/level.hpp"
 #include "tunica/meshing/marching_cubes.hpp"
 #include "tunica/meshing/remesh.hpp"
 #include "tunica/meshing/smooth.hpp"
 #include "tunica/meshing/tetrahedra.hpp"
+#include "tunica/meshing/untangle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -119,6 +121,13 @@ namespace detail {
   return h;
 }
 
+[[nodiscard]] inline double smallest_spacing(const image::Image<float>& image) {
+  double h = largest_spacing(image);
+  for (const auto& axis : image.axes)
+    for (std::size_t i = 1; i < axis.size(); ++i) h = std::min(h, axis[i] - axis[i - 1]);
+  return h;
+}
+
 /// The closed surface of the region, and what the report says of its borders with the image.
 [[nodiscard]] inline mesh::Surface contour(const image::Image<float>& image, const image::Region& region,
                                            const ImageOptions& o, Json& report) {
@@ -175,7 +184,12 @@ inline constexpr int image_stages = 7;
   const double edge = o.edge.value_or(1.5 * detail::largest_spacing(image));
   Json borders, specks;
   s = stage("contour", [&] {
-    return detail::without_specks(detail::contour(image, region, o, borders), edge, specks, report);
+    auto made = detail::without_specks(detail::contour(image, region, o, borders), edge, specks, report);
+    if (o.surface == Contourer::dual_contouring) {  // its faces lie outside of what is convex, and may cross
+      meshing::level(made, image, *o.iso, {.reach = 0.25 * detail::smallest_spacing(image)});
+      (void)meshing::untangle(made);
+    }
+    return made;
   });
   const auto contoured = mesh::topology(s);
   report["contour"] = surface_figures(s, contoured);

@@ -132,7 +132,8 @@ TEST_SUITE("job") {
             r({"fill", "smallest_dihedral_degrees"}), " degrees");
     CHECK(r({"surface", "genus"}) == 0);
     CHECK(r({"fill", "inverted"}) == 0);
-    CHECK(std::abs(r({"fill", "volume"}) - true_volume) < 0.02 * true_volume);
+    CHECK(std::abs(r({"fill", "volume"}) - true_volume) < 0.005 * true_volume);
+    CHECK(has(r.report, "\"name\": \"border y0\""));
     CHECK(faults(*checker, folder, "a.vtu --surface a.surface.vtp --tol 0") == "");
     const Folder empty;
     const auto small = mesh(empty, *image, " --iso 1299.5" + seed + " --cut 221.567,165,22.215,0,1,0,5");

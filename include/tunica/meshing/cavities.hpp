@@ -6,6 +6,8 @@
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/topology.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -22,15 +24,19 @@ struct [[nodiscard]] WithoutCavities {
   std::vector<Cavity> filled;  // in the order of their first triangles
 };
 
-/// The surface without those of its components that turn inward and enclose less than `least_volume`. The
-/// others keep their nodes, triangles and regions, in order; `topology` is that of the surface.
+/// The boundary of one connected body without its cavities of less than `least_volume`: all components but
+/// the one that encloses most, also where a contour of few voxels came out inside out. The others keep their
+/// nodes, triangles and regions, in order; `topology` is that of the surface.
 [[nodiscard]] inline WithoutCavities fill_cavities(mesh::Surface surface, const mesh::Topology& topology,
                                                    double least_volume) {
   WithoutCavities r;
+  double most = 0;
+  for (const mesh::Component& c : topology.components) most = std::max(most, c.volume);
   std::vector<char> filled;  // of each component
   for (const mesh::Component& c : topology.components) {
-    filled.push_back(c.loops == 0 && c.volume < 0 && -c.volume < least_volume);
-    if (filled.back() != 0) r.filled.push_back({-c.volume, c.centre});
+    const double volume = std::abs(c.volume);
+    filled.push_back(c.loops == 0 && c.volume < most && volume < least_volume);
+    if (filled.back() != 0) r.filled.push_back({volume, c.centre});
   }
   if (r.filled.empty()) {
     r.surface = std::move(surface);
