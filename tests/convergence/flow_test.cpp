@@ -163,11 +163,44 @@ TEST_SUITE("convergence") {
     CHECK(bad_rough.back() > 10 * smooth);
   }
 
+  TEST_CASE("fluid: second order in time with prescribed velocities") {
+    const auto mesh = slab(16, 2, 0, pi);
+    for (const double nu : {0.02, 0.1}) {
+      const test::TaylorGreen exact{.nu = nu};
+      auto early = with_exact_boundary<fluid::FixedMesh>(mesh, exact);
+      for (int k = 0; k < 50; ++k) REQUIRE(early.step(0.01));
+      const double start = early.time();  // the interpolated start and its transient lie behind
+      const auto run = [&](int steps, int passes) {
+        fluid::Projection flow{mesh, fluid::Newtonian{.density = 1, .viscosity = nu}, fluid::Fic{},
+                               fluid::FixedMesh{}, fluid::ProjectionOptions{.passes = passes}};
+        for (const auto* side : test::box_sides)
+          flow.velocity(side, [=](const Vec3& x, double t) { return exact.u(x, start + t); });
+        flow.set(early.velocity(), early.pressure());
+        for (int k = 0; k < steps; ++k) REQUIRE(flow.step(1.0 / steps));
+        return flow;
+      };
+      const auto reference = run(320, 3);
+      std::vector<double> u, p;
+      for (const int steps : {10, 20, 40}) {
+        const auto flow = run(steps, 1);
+        u.push_back((flow.velocity() - reference.velocity()).norm() / reference.velocity().norm());
+        p.push_back((flow.pressure() - reference.pressure()).norm() / reference.pressure().norm());
+      }
+      MESSAGE("nu " << nu << ": velocity " << u[0] << " " << u[1] << " " << u[2] << " order "
+                    << order(u[1], u[2]) << "; pressure " << p[0] << " " << p[1] << " " << p[2] << " order "
+                    << order(p[1], p[2]));
+      CHECK(order(u[1], u[2]) > 1.8);
+      CHECK(order(p[1], p[2]) > 1.4);
+    }
+  }
+
   TEST_CASE("fluid: order in time with a pressure outlet needs the rotational form") {
-    auto mesh =
-        meshing::box_tets(meshing::Block{.cells = {18, 6, 3}, .lo = Vec3::Zero(), .hi = Vec3(pi, 1, 0.5)});
-    test::shake(mesh, 0.02);
-    const Outflow exact{.nu = 0.5};
+    // The outlet's pressure is corrected through a layer of the width sqrt(nu dt): theory's orders 3/2 and
+    // 1 of the velocity and the pressure are seen where the mesh resolves it.
+    auto mesh = meshing::box_tets(
+        meshing::Block{.cells = {16, 10, 6}, .lo = Vec3(pi / 2, 0, 0), .hi = Vec3(pi, 1, 0.6)});
+    test::shake(mesh, 0.01);
+    const Outflow exact{.nu = 1};
     const auto run = [&](int steps, fluid::ProjectionOptions options) {
       auto flow = with_exact_boundary<fluid::FixedMesh>(mesh, exact, options);
       flow.pressure("x1", [exact](const Vec3& x, double t) { return exact.outlet(x, t); });
@@ -177,18 +210,18 @@ TEST_SUITE("convergence") {
       for (int k = 0; k < steps; ++k) REQUIRE(flow.step(1.0 / steps));
       return flow;
     };
-    const auto reference = run(480, {.passes = 3});
+    const auto reference = run(240, {.passes = 3});
     MESSAGE("error of the mesh: velocity " << error(reference, mesh, exact).velocity);
     const auto orders = [&](fluid::ProjectionOptions options) {
       std::vector<double> u, p;
-      for (const int steps : {10, 20, 40, 80}) {
+      for (const int steps : {20, 40, 80}) {
         const auto flow = run(steps, options);
         u.push_back((flow.velocity() - reference.velocity()).norm() / reference.velocity().norm());
         p.push_back((flow.pressure() - reference.pressure()).norm() / reference.pressure().norm());
       }
       MESSAGE("chi " << options.rotational << " passes " << options.passes << ": velocity " << u[0] << " "
-                     << u[1] << " " << u[2] << " " << u[3] << " order " << order(u[2], u[3]) << "; pressure "
-                     << p[0] << " " << p[1] << " " << p[2] << " " << p[3] << " order " << order(p[2], p[3]));
+                     << u[1] << " " << u[2] << " order " << order(u[1], u[2]) << "; pressure " << p[0] << " "
+                     << p[1] << " " << p[2] << " order " << order(p[1], p[2]));
       return std::pair(u, p);
     };
     const auto [u1, p1] = orders({.passes = 1});
@@ -196,12 +229,13 @@ TEST_SUITE("convergence") {
     const auto [us, ps] = orders({.passes = 1, .rotational = 0});
     // Theory gives the standard form no more than order 1 and 1/2; here it stops altogether, because the
     // pressure at the outlet stays where it was prescribed.
-    CHECK(order(u1[2], u1[3]) > 1.0);
-    CHECK(order(p1[2], p1[3]) > 1.0);
-    CHECK(order(u3[2], u3[3]) > 1.0);
-    CHECK(u3[3] < 0.5 * u1[3]);
-    CHECK(us[3] > 10 * u1[3]);
-    CHECK(ps[3] > 10 * p1[3]);
+    CHECK(order(u1[1], u1[2]) > 1.5);
+    CHECK(order(p1[1], p1[2]) > 1.4);
+    CHECK(order(u3[1], u3[2]) > 1.8);
+    CHECK(order(p3[1], p3[2]) > 1.4);
+    CHECK(u3[2] < 0.2 * u1[2]);
+    CHECK(us[2] > 10 * u1[2]);
+    CHECK(ps[2] > 10 * p1[2]);
   }
 
   TEST_CASE("fluid: second order in time and space on a moving mesh") {

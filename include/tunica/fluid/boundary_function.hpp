@@ -10,7 +10,8 @@
 
 namespace tunica::fluid {
 
-/// Value is double or Vec3. Built from a Value, from f(t) or from f(x, t); x [m], t [s].
+/// Value is double or Vec3. Built from a Value, from f(t) or from f(x, t), plain functions among them;
+/// x [m], t [s].
 template <class Value>
 class BoundaryFunction {
  public:
@@ -24,9 +25,10 @@ class BoundaryFunction {
   [[nodiscard]] Value operator()(const Vec3& x, double t) const { return call_(object_.get(), x, t); }
 
  private:
-  /// A constant is kept as a Value: an expression of Eigen would refer to what is gone.
+  /// A constant is kept as a Value: an expression of Eigen would refer to what is gone. A function is kept
+  /// by its address.
   template <class F>
-  using Stored = std::conditional_t<std::is_convertible_v<F, Value>, Value, std::remove_cvref_t<F>>;
+  using Stored = std::conditional_t<std::is_convertible_v<F, Value>, Value, std::decay_t<F>>;
 
   static Value zero() {
     if constexpr (std::is_arithmetic_v<Value>)

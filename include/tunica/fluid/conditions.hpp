@@ -4,10 +4,11 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/fluid/boundary_function.hpp"
-#include "tunica/fluid/vec.hpp"
+#include "tunica/fluid/field.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/patch_nodes.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -42,7 +43,8 @@ struct Condition {
 };
 
 /// A patch without a condition is a wall: no slip at the velocity of the grid. On an edge between
-/// patches a wall goes before a velocity, a velocity before nothing; pressures hold on their whole patch.
+/// patches a wall goes before a velocity, a velocity before a pressure, which loads its whole patch all the
+/// same.
 class Conditions {
  public:
   explicit Conditions(const mesh::TetMesh& mesh) : node_count_(static_cast<std::size_t>(mesh.node_count())) {
@@ -75,21 +77,26 @@ class Conditions {
   }
   [[nodiscard]] const std::vector<Condition>& list() const { return list_; }
 
-  /// Marks the nodes again after a condition was changed.
+  /// Marks the nodes again after a condition was changed. A node on the edge of a pressure patch whose
+  /// velocity is prescribed answers to continuity, like its neighbours on the wall: were its pressure
+  /// prescribed, only the stabilisation could correct it, by an eighth a step. A patch without any other
+  /// node keeps them.
   void flag() {
     velocity_.assign(node_count_, 0), pressure_.assign(node_count_, 0);
     any_pressure_ = false;
     for (const auto& c : list_)
-      for (const Index n : c.nodes) {
-        const auto k = static_cast<std::size_t>(n);
-        if (c.kind == Kind::pressure)
-          pressure_[k] = 1, any_pressure_ = true;
-        else
-          velocity_[k] = 1;
-      }
+      if (c.kind != Kind::pressure)
+        for (const Index n : c.nodes) velocity_[static_cast<std::size_t>(n)] = 1;
+    for (const auto& c : list_) {
+      if (c.kind != Kind::pressure) continue;
+      const auto free = [&](Index n) { return !velocity_[static_cast<std::size_t>(n)]; };
+      const bool any_free = std::any_of(c.nodes.begin(), c.nodes.end(), free);
+      for (const Index n : c.nodes)
+        if (free(n) || !any_free) pressure_[static_cast<std::size_t>(n)] = 1, any_pressure_ = true;
+    }
   }
 
-  /// One flag a node: its velocity, or its pressure, is prescribed.
+  /// One flag a node: its velocity, or its pressure in the pressure equation, is prescribed.
   [[nodiscard]] const std::vector<char>& velocity_flags() const { return velocity_; }
   [[nodiscard]] const std::vector<char>& pressure_flags() const { return pressure_; }
   [[nodiscard]] bool any_pressure() const { return any_pressure_; }
@@ -112,12 +119,18 @@ class Conditions {
         for (const Index n : c.nodes) set_column(u, n, column(w, n));
   }
 
-  /// Writes the prescribed pressures at time t into p (nodes), 0 elsewhere.
+  /// Writes the pressures at time t on the pressure patches into p (nodes), 0 elsewhere.
   void impose_pressure(const Points<3>& x, double t, Eigen::VectorXd& p) const {
     p.setZero(static_cast<Eigen::Index>(node_count_));
     for (const auto& c : list_)
       if (c.kind == Kind::pressure)
         for (const Index n : c.nodes) p[n] = c.scalar(column(x, n), t);
+  }
+
+  /// p = 0 where the pressure equation does not prescribe it.
+  void keep_prescribed(Eigen::VectorXd& p) const {
+    for (std::size_t n = 0; n < node_count_; ++n)
+      if (!pressure_[n]) p[static_cast<Eigen::Index>(n)] = 0;
   }
 
   /// Normal times area of a face, outward [m2].

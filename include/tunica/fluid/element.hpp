@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tunica/fem/p1_tets.hpp"
-#include "tunica/fluid/vec.hpp"
+#include "tunica/fluid/field.hpp"
 
 namespace tunica::fluid {
 

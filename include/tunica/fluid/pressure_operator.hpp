@@ -7,7 +7,9 @@
 #include "tunica/fem/p1_tets.hpp"
 #include "tunica/la/vector_ops.hpp"
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace tunica::fluid {
@@ -98,6 +100,17 @@ class PressureOperator {
         y[i] -= sum;
       }
     });
+  }
+
+  /// What rounding leaves of b - A x for an x of that size: some hundred roundings of |diag(A) x|.
+  [[nodiscard]] double round_off(const Eigen::VectorXd& x) const {
+    double sum = 0;
+    const int *outer = preconditioning_.outerIndexPtr(), *inner = preconditioning_.innerIndexPtr();
+    for (int i = 0; i < preconditioning_.rows(); ++i)
+      for (int k = outer[i]; k < outer[i + 1]; ++k)
+        if (inner[k] == i)
+          sum += preconditioning_.valuePtr()[k] * preconditioning_.valuePtr()[k] * x[i] * x[i];
+    return 128 * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
   }
 
   /// 1 / Mt, 0 at nodes without stabilisation: nodes.

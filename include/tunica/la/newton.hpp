@@ -27,16 +27,15 @@ struct ResidualInfo {
 
 /// r(x) = 0 with r = 0 kept for prescribed unknowns; `tangent` fills A = dr/dx at x, the rows and
 /// columns of prescribed unknowns being those of a diagonal matrix; `pattern` is a matrix of A's
-/// pattern. `direction` announces the step dx that leaves the x
-/// of the last residual, and `residual` is told how far along
-/// it x is (or no_step), so that a problem with condensed unknowns can carry them along.
+/// pattern. `direction` announces the step dx that leaves the x of the last residual, and `residual` is
+/// told how far along it x is (or no_step), so that a problem with condensed unknowns can carry them along.
 template <class P>
 concept NonlinearProblem = requires(P problem, const Eigen::VectorXd& x, Eigen::VectorXd& r,
                                     SparseMatrix& A) {
-  { problem.residual(x, r, 1.0) } -> std::same_as<ResidualInfo>;
-  problem.direction(x);
-  problem.tangent(x, A);
-  { problem.pattern() } -> std::convertible_to<SparseMatrix>;
+  { problem.residual(x, r, 1.0) } -> std::same_as<ResidualInfo>;  // a residual with its scale
+  problem.direction(x);                                           // a problem is told the step that is tried
+  problem.tangent(x, A);                                          // a problem has a tangent
+  { problem.pattern() } -> std::convertible_to<SparseMatrix>;     // a problem has a pattern of its tangent
 };
 
 struct NewtonOptions {

@@ -13,7 +13,7 @@ namespace tunica::la {
 ///   struct Euler { static constexpr int depth = 1; };
 template <class T>
 concept TimeScheme = requires {
-  { T::depth } -> std::convertible_to<int>;
+  { T::depth } -> std::convertible_to<int>;  // a scheme says how many old levels it reads
 };
 
 /// The equation of motion is met at M a^{n+am} + f(u^{n+af}) = 0, x^{n+c} = (1-c) x^n + c x^{n+1}, with

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The L2 projection of a pressure gradient on the velocities, with the mass matrix of the predictor.
+#pragma once
+
+#include "tunica/fluid/domain.hpp"
+#include "tunica/la/cg.hpp"
+#include "tunica/la/preconditioner.hpp"
+
+namespace tunica::fluid {
+
+/// M w = g on the nodes whose velocity is free, w = 0 on the others. Lumping M here, but not in the
+/// predictor, would leave (M M_L^-1 - 1) grad dp in the momentum balance: of first order in time next to
+/// prescribed velocities. ||P grad q|| <= ||grad q||, so the projection stays stable. [GUERMOND06]
+/// A template of its scalar: only the scenes that take a step pay for it.
+template <class Scalar = double>
+class ConsistentMass {
+  using Vector = Eigen::VectorX<Scalar>;
+
+ public:
+  explicit ConsistentMass(const Pattern& pattern) : matrix_(pattern.matrix<Eigen::RowMajor>()) {}
+
+  void assemble(const Domain& domain) {
+    domain.pattern.clear(matrix_);
+    double* values = matrix_.valuePtr();
+    domain.pattern.for_each_cell([&](Index e) {
+      const double mass = domain.tets[e].volume / 20;
+      const Index* position = domain.pattern.positions(e);
+      for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b) values[*position++] += a == b ? 2 * mass : mass;
+    });
+    const auto& fixed = domain.conditions.velocity_flags();
+    const int *outer = matrix_.outerIndexPtr(), *inner = matrix_.innerIndexPtr();
+    for (int i = 0; i < matrix_.rows(); ++i)
+      for (int k = outer[i]; k < outer[i + 1]; ++k)
+        if (inner[k] != i &&
+            (fixed[static_cast<std::size_t>(i)] || fixed[static_cast<std::size_t>(inner[k])]))
+          values[k] = 0;
+    jacobi_.compute(matrix_);
+  }
+
+  /// field (3 x nodes): g on entry, w on return.
+  SolveReport solve(const Domain& domain, Points<3>& field) {
+    constexpr la::KrylovOptions options{.tolerance = 1e-4, .max_iterations = 100};  // the condition is 5
+    const auto& fixed = domain.conditions.velocity_flags();
+    right_ = field.reshaped();
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+      if (fixed[i])
+        for (int c = 0; c < 3; ++c) right_[static_cast<Eigen::Index>(3 * i) + c] = 0;
+    jacobi_.apply(right_, solution_);
+    const SolveReport report = la::cg(la::ApplyMatrix<3>{matrix_}, jacobi_, right_, solution_, options);
+    field = solution_.reshaped(3, field.cols());
+    return report;
+  }
+
+ private:
+  la::RowMatrix matrix_;
+  la::Jacobi<3> jacobi_;
+  Vector right_, solution_;
+};
+
+}  // namespace tunica::fluid
