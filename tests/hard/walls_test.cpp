@@ -5,7 +5,6 @@
 #include "support/vessels.hpp"
 #include "tunica/image/components.hpp"
 #include "tunica/io/vtk_image.hpp"
-#include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/measures.hpp"
 #include "tunica/mesh/patch_nodes.hpp"
 #include "tunica/meshing/cut.hpp"
@@ -49,21 +48,49 @@ void report(const std::string& name, double edge, const meshing::WallResult& r) 
                << e.quality.scaled_jacobian.least << " mean " << e.quality.scaled_jacobian.mean
                << "; thickness gave way at " << e.thinned << " nodes, to " << e.least_share << " at "
                << e.thinnest.transpose() << "; interfaces apart at most " << d.quads_max / edge << " and "
-               << d.wall_max / edge << ", rms " << d.quads_rms / edge << " and " << d.wall_rms / edge
-               << " edges, beyond a tenth " << 100 * d.quads_beyond << " % and " << 100 * d.wall_beyond
-               << " %");
+               << d.wall_max / edge << " (at " << d.wall_place.transpose() << "), rms " << d.quads_rms / edge
+               << " and " << d.wall_rms / edge << " edges, beyond a tenth " << 100 * d.quads_beyond
+               << " % and " << 100 * d.wall_beyond << " %; grid drawn together " << r.report.refinements
+               << " times at " << r.report.lenses << " places");
+}
+
+/// Largest distance of a node of the lumen's wall from the bilinear faces, each as 8 x 8 smaller ones.
+double farthest_from(const mesh::QuadSurface& quads, const mesh::Surface& lumen) {
+  constexpr Index parts = 8;
+  mesh::QuadSurface fine;
+  fine.nodes.resize(3, quads.cell_count() * (parts + 1) * (parts + 1));
+  fine.cells.resize(4, quads.cell_count() * parts * parts);
+  Index node = 0, cell = 0;
+  for (Index q = 0; q < quads.cell_count(); ++q) {
+    const auto x = [&](int k) { return Vec3(quads.nodes.col(quads.cells(k, q))); };
+    for (Index j = 0; j <= parts; ++j)
+      for (Index i = 0; i <= parts; ++i) {
+        const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
+        if (i < parts && j < parts)
+          fine.cells.col(cell++) << node, node + 1, node + parts + 2, node + parts + 1;
+        fine.nodes.col(node++) = (1 - v) * ((1 - u) * x(0) + u * x(1)) + v * ((1 - u) * x(3) + u * x(2));
+      }
+  }
+  const auto sheet = meshing::split_quads(fine);
+  const meshing::FootFinder back(sheet);
+  double farthest = 0;
+  for (const Vec3& x : meshing::wall_points(lumen)) farthest = std::max(farthest, back.distance(x));
+  return farthest;
 }
 
 }  // namespace
 
 TEST_SUITE("hard") {
-  TEST_CASE("meshing: wall of the bifurcation has no inverted cell") {
+  TEST_CASE("meshing: wall of the bifurcation has no inverted cell and follows the lumen") {
     const auto lumen = test::vessels::bifurcation(0.9);
     for (const double edge : {3.0, 2.0, 1.5, 1.0}) {
       const auto result = meshing::vessel_wall(lumen, {.thickness = 1.5, .edge = edge, .layers = 2});
       report("phantom", edge, result);
       check_wall(lumen, result);
-      CHECK(result.report.extrusion.quality.scaled_jacobian.least >= (edge < 2.5 ? 0.2 : 0.1));
+      CHECK(result.report.extrusion.quality.scaled_jacobian.least >= 0.2);
+      CHECK(result.report.within);
+      CHECK(result.report.distance.quads_max < 0.1 * edge);
+      CHECK(farthest_from(result.inner, lumen) < 0.1 * edge);
     }
   }
 
@@ -80,27 +107,23 @@ TEST_SUITE("hard") {
          {.point = {237.629, 95.025, 31.872}, .normal = {0.2506, -0.8866, 0.3888}, .name = "outlet 2"}}};
     const auto lumen = meshing::cut(std::move(contour.surface), cuts).surface;
     const auto even = meshing::remesh(lumen, {.edge = 2}).surface;
-    const auto around = mesh::cells_of_nodes(even.cells, even.node_count());
     for (const double edge : {2.0, 1.5}) {
       const auto result = meshing::vessel_wall(even, {.thickness = 1.5, .edge = edge, .layers = 2});
       report("real, remeshed to 2 mm", edge, result);
       check_wall(even, result);
-      CHECK(result.inner.cell_count() == doctest::Approx(3785 / (edge * edge)).epsilon(0.06));
+      CHECK(result.inner.cell_count() == doctest::Approx(3785 / (edge * edge)).epsilon(0.25));
       CHECK(result.report.extrusion.quality.scaled_jacobian.least >= 0.2);
-      // A blind stub thinner than the edge is cut short; elsewhere the interfaces are close.
-      const auto sheet = meshing::split_quads(result.inner);
-      const meshing::FootFinder back(sheet);
-      double farthest = 0;
-      for (Index n = 0; n < even.node_count(); ++n) {
-        const Vec3 x = even.nodes.col(n);
-        bool on_wall = false;
-        for (const Index t : around[n]) on_wall = on_wall || even.region_of(t) == 0;
-        if (on_wall && (x - Vec3(213.5, 120, 33)).norm() > 6) farthest = std::max(farthest, back.distance(x));
-      }
-      MESSAGE("away from the stub the nodes of the lumen lie within " << farthest / edge
-                                                                      << " edges of the wall");
-      CHECK(farthest < 0.25 * edge);
-      CHECK(result.report.distance.quads_beyond < 0.01);
+      // The tip of a blind stub, a spike of less than 0.5 mm at (211.2, 118.9, 34.6), is out of reach of
+      // sound hexahedra: the report must say how far and where, and be right, and nothing else may be so far
+      // off.
+      const auto& d = result.report.distance;
+      CHECK_FALSE(result.report.within);
+      CHECK(farthest_from(result.inner, even) == doctest::Approx(d.wall_max).epsilon(0.05));
+      CHECK((d.wall_place - Vec3(211.2, 118.9, 34.6)).norm() < 1);
+      CHECK(d.wall_max < edge);
+      CHECK(d.quads_max < 0.25 * edge);
+      CHECK(d.quads_beyond < 0.002);
+      CHECK(d.wall_beyond < 0.01);
     }
     const auto rough = meshing::vessel_wall(lumen, {.thickness = 1.5, .edge = 2});
     report("real, triangles as cut", 2, rough);

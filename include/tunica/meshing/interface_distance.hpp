@@ -22,11 +22,30 @@ struct InterfaceDistance {
   Vec3 quads_place = Vec3::Zero(), wall_place = Vec3::Zero();
 };
 
-/// Bilinear points, 5 x 5 a quadrilateral, against region 0 of the lumen; its nodes against the
-/// quadrilaterals, each cut into 4 x 4 smaller ones.
+/// A point of one mesh that lies farther from the other than the tolerance.
+struct FarPlace {
+  Vec3 place;
+  double distance;
+};
+
+/// The nodes of region 0.
+[[nodiscard]] inline std::vector<Vec3> wall_points(const mesh::Surface& lumen) {
+  std::vector<char> wall(static_cast<std::size_t>(lumen.node_count()), 0);
+  for (Index t = 0; t < lumen.cell_count(); ++t)
+    if (lumen.region_of(t) == 0)
+      for (int k = 0; k < 3; ++k) wall[static_cast<std::size_t>(lumen.cells(k, t))] = 1;
+  std::vector<Vec3> points;
+  for (Index n = 0; n < lumen.node_count(); ++n)
+    if (wall[static_cast<std::size_t>(n)] != 0) points.push_back(vec::column(lumen.nodes, n));
+  return points;
+}
+
+/// Bilinear points, 5 x 5 a quadrilateral, against the lumen; the points of its wall against the
+/// quadrilaterals, each cut into 4 x 4 smaller ones. `far` receives the places beyond the tolerance.
 template <FootSurface S>
-[[nodiscard]] InterfaceDistance interface_distance(const mesh::QuadSurface& quads, const mesh::Surface& lumen,
-                                                   const S& finder, double tolerance) {
+[[nodiscard]] InterfaceDistance interface_distance(const mesh::QuadSurface& quads,
+                                                   const std::vector<Vec3>& wall, const S& finder,
+                                                   double tolerance, std::vector<FarPlace>* far = nullptr) {
   constexpr int parts = 4;
   InterfaceDistance d;
   mesh::QuadSurface fine;
@@ -44,6 +63,7 @@ template <FootSurface S>
         const double away = finder.distance(p);
         d.quads_rms += away * away;
         d.quads_beyond += away > tolerance ? 1 : 0;
+        if (far != nullptr && away > tolerance) far->push_back({p, away});
         if (away > d.quads_max) d.quads_max = away, d.quads_place = p;
       }
     for (int j = 0; j < parts; ++j)
@@ -58,20 +78,15 @@ template <FootSurface S>
 
   const mesh::Surface triangles = split_quads(fine);
   const FootFinder back(triangles);
-  std::vector<char> wall(static_cast<std::size_t>(lumen.node_count()), 0);
-  for (Index t = 0; t < lumen.cell_count(); ++t)
-    if (lumen.region_of(t) == 0)
-      for (int k = 0; k < 3; ++k) wall[static_cast<std::size_t>(lumen.cells(k, t))] = 1;
-  Index count = 0;
-  for (Index n = 0; n < lumen.node_count(); ++n) {
-    if (wall[static_cast<std::size_t>(n)] == 0) continue;
-    ++count;
-    const double away = back.distance(vec::column(lumen.nodes, n));
+  for (const Vec3& x : wall) {
+    const double away = back.distance(x);
     d.wall_rms += away * away;
     d.wall_beyond += away > tolerance ? 1 : 0;
-    if (away > d.wall_max) d.wall_max = away, d.wall_place = vec::column(lumen.nodes, n);
+    if (far != nullptr && away > tolerance) far->push_back({x, away});
+    if (away > d.wall_max) d.wall_max = away, d.wall_place = x;
   }
-  if (count > 0) d.wall_rms = std::sqrt(d.wall_rms / count), d.wall_beyond /= count;
+  const auto count = static_cast<double>(wall.size());
+  if (!wall.empty()) d.wall_rms = std::sqrt(d.wall_rms / count), d.wall_beyond /= count;
   return d;
 }
 

@@ -23,6 +23,12 @@ struct Foot {
   double distance = std::numeric_limits<double>::infinity();
 };
 
+/// The nearest point as a combination of the nodes of its triangle.
+struct FootWeights {
+  Index triangle = -1;  // of the surface
+  Vec3 weights, point;
+};
+
 /// What nodes can be slid on: triangles (FootFinder), or a surface known in closed form.
 template <class S>
 concept FootSurface = requires(const S& s, const Vec3& x) {
@@ -40,7 +46,9 @@ class FootFinder {
     for (Index t = 0; t < surface.cell_count(); ++t) {
       if (surface.region_of(t) != region) continue;
       triangles_.push_back(t);
-      boxes.push_back(mesh::triangle(surface, t).box());
+      shape_.push_back(mesh::triangle(surface, t));
+      area_.push_back(shape_.back().area_vector());
+      boxes.push_back(shape_.back().box());
     }
     tree_ = search::Octree(boxes);
   }
@@ -56,27 +64,35 @@ class FootFinder {
     return std::sqrt(tree_.nearest(x, [&](Index i) { return squared(x, i); }).squared_distance);
   }
 
+  /// Of a surface that is not empty.
+  [[nodiscard]] FootWeights nearest_weights(const Vec3& x) const {
+    const auto found = tree_.nearest(x, [&](Index i) { return squared(x, i); });
+    const auto& t = triangle(found.item);
+    const Vec3 weights = t.nearest(x);
+    return {triangles_[static_cast<std::size_t>(found.item)], weights, t.at(weights)};
+  }
+
   /// The nearest among the triangles that face the same way as the normal: not the far side of a fold.
   [[nodiscard]] Foot nearest_facing(const Vec3& x, const Vec3& normal) const {
     const auto found = tree_.nearest(x, [&](Index i) {
-      const bool facing = vec::dot(triangle(i).area_vector(), normal) > 0;
+      const bool facing = vec::dot(area_[static_cast<std::size_t>(i)], normal) > 0;
       return facing ? squared(x, i) : std::numeric_limits<double>::infinity();
     });
     return found.item >= 0 && std::isfinite(found.squared_distance) ? foot(x, found) : nearest(x);
   }
 
  private:
-  [[nodiscard]] mesh::Triangle triangle(Index item) const {
-    return mesh::triangle(surface_, triangles_[static_cast<std::size_t>(item)]);
+  [[nodiscard]] const mesh::Triangle& triangle(Index item) const {
+    return shape_[static_cast<std::size_t>(item)];
   }
   [[nodiscard]] double squared(const Vec3& x, Index item) const {
-    const auto t = triangle(item);
+    const auto& t = triangle(item);
     const Vec3 way = vec::minus(t.at(t.nearest(x)), x);
     return vec::dot(way, way);
   }
   [[nodiscard]] Foot foot(const Vec3& x, const search::Nearest& found) const {
     if (found.item < 0) return {x, Vec3::Zero()};
-    const auto t = triangle(found.item);
+    const auto& t = triangle(found.item);
     const Vec3 weights = t.nearest(x);
     Vec3 n = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
@@ -89,7 +105,9 @@ class FootFinder {
 
   const mesh::Surface& surface_;
   std::vector<Vec3> normals_;
-  std::vector<Index> triangles_;
+  std::vector<Index> triangles_;  // of the surface, and what is asked of them again and again
+  std::vector<mesh::Triangle> shape_;
+  std::vector<Vec3> area_;
   search::Octree tree_;
 };
 
