@@ -221,6 +221,7 @@ inline constexpr int image_stages = 7;
   stage("remesh", [&] {
     report["edge"] = edge;
     if (!(edge > 0)) return;
+    if (o.fill == Fill::tets) require_countable(s, edge);
     auto remeshed = meshing::remesh(s, {.edge = edge});
     s = std::move(remeshed.surface);
     report["remesh"] = remesh_figures(remeshed.report);

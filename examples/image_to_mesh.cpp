@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   cli.option("--report", "FILE.json", "figures and seconds of each stage", report_file);
 
   return run_program(cli, argc, argv, [&] {
+    if (options.image.empty()) throw UsageError("IMAGE is empty");
     const auto volume = mesh_file(out, options.image);
     Stages stage(image_stages + 1);
     Json report;

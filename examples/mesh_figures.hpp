@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdio>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -78,6 +79,15 @@ inline void tell_topology(const mesh::Surface& s, const mesh::Topology& t, Json&
     if (c.volume < 0)
       warn(report,
            "there is a cavity of volume " + short_text(-c.volume) + " at (" + place_text(c.centre) + ")");
+}
+
+/// Tetrahedra of an edge length that would not be held in memory are refused before any is made.
+inline void require_countable(const mesh::Surface& s, double edge) {
+  constexpr double most = 2e8;
+  const double wanted = 6 * std::numbers::sqrt2 * mesh::enclosed_volume(s) / (edge * edge * edge);
+  if (!(wanted <= most))
+    throw MeshError("an edge length of " + short_text(edge) + " would take " + short_text(wanted) +
+                    " tetrahedra, more than " + short_text(most));
 }
 
 [[nodiscard]] inline Json fill_figures(const meshing::FillReport& r, const mesh::TetMesh& tets) {

@@ -7,6 +7,7 @@
 #include "stages.hpp"
 #include "tunica/io/atomic_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -23,11 +24,14 @@ class OutputFiles {
   OutputFiles& operator=(const OutputFiles&) = delete;
   ~OutputFiles() {
     std::error_code ignored;
-    for (const auto& path : made_) std::filesystem::remove(path, ignored);
+    for (const auto& path : made_)
+      if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
   }
 
   template <class Write>
   void write(const std::filesystem::path& path, Write&& write_to) {
+    if (std::find(made_.begin(), made_.end(), path) != made_.end())
+      throw UsageError("two outputs are named \"" + path.string() + "\"");
     std::forward<Write>(write_to)(path);
     made_.push_back(path);
   }

@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
     tell_topology(surface, topology, report);
     stage("remesh", [&] {
       if (!(edge > 0)) return;
+      require_countable(surface, edge);
       auto remeshed = meshing::remesh(surface, {.edge = edge});
       surface = std::move(remeshed.surface);
       report["remesh"] = remesh_figures(remeshed.report);

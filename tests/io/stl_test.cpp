@@ -166,6 +166,8 @@ TEST_SUITE("unit") {
       }
     touch.nodes.col(6) = Vec3(3, 0, 0);
     CHECK(has(refusal(bytes_of(touch)), "1 points where the surface touches itself"));
+    const std::string corners = "vertex 0 0 0\nvertex 0 1e300 0\nvertex 1e300 0 0\n";
+    CHECK(has(refusal("solid\n" + facet(corners) + "endsolid\n"), "the diagonal of the surface is "));
     auto flat = s;
     flat.nodes.row(2).setZero();
     CHECK(!refusal(bytes_of(flat)).empty());

@@ -169,6 +169,16 @@ TEST_SUITE("unit") {
     CHECK(has(dims("DIMENSIONS 2 2 2\nSPACING 1 1 nan\n"), "SPACING is not finite"));
     CHECK(has(dims("DIMENSIONS 2 2 2\nORIGIN 1e300 0 0\nPOINT_DATA 8\nSCALARS s char\n1 2 3 4 5 6 7 8\n"),
               "spacing x is lost"));
+    const std::string eight = "POINT_DATA 8\nSCALARS s char\n1 2 3 4 5 6 7 8\n";
+    CHECK(refusal(head + "ASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nSPACING 1e-30 1e29 1\n" +
+                  eight) == "");
+    CHECK(has(dims("DIMENSIONS 2 2 2\nSPACING 1 1 1e-100\n" + eight),
+              "f.vtk: spacing z is 1e-100: lengths lie between 1e-30 and 1e+30"));
+    CHECK(has(dims("DIMENSIONS 2 2 2\nSPACING 1 1e100 1\n" + eight),
+              "f.vtk: coordinate y is 1e+100: lengths lie"));
+    CHECK(has(refusal(head + "ASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 1 1 1\nPOINT_DATA 1\nSCALARS s "
+                             "double\n1e300\n"),
+              "value 1e+300 of scalar data 0 cannot be held exactly"));
     CHECK(has(dims("POINT_DATA 8\n"), "before DIMENSIONS"));
     CHECK(has(dims("DIMENSIONS 2147483647 1 1\nPOINT_DATA 2147483647\nSCALARS s char\n1"),
               "room for at most 1"));

@@ -111,6 +111,15 @@ TEST_SUITE("unit") {
                          MeshError);
   }
 
+  TEST_CASE("meshing: an edge length that would take too many triangles is refused at once") {
+    const auto s =
+        meshing::marching_cubes(test::sampled<float>(16, [](const Vec3& x) { return -test::sphere(x); }), 0)
+            .surface;
+    CHECK_THROWS_WITH_AS((void)meshing::remesh(s, {.edge = 1e-6}),
+                         doctest::Contains("an edge length of 1e-06 would take "), MeshError);
+    CHECK_THROWS_AS((void)meshing::remesh(s, {.edge = 1e-300}), MeshError);
+  }
+
   TEST_CASE("meshing: the aortic bifurcation is remeshed to triangles of fifteen degrees") {
     const auto path = test::shared("data/aorta_bifurcation.vtk");
     if (!path) return;

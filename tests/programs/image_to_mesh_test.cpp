@@ -190,6 +190,27 @@ TEST_SUITE("job") {
       CHECK(has(o.err, "error: no/such/folder.json: cannot be written: No such file or directory"));
       CHECK(folder.files().empty());
     }
+    refused(*good, " --iso 1299.5 --edge 0.02" + seed + cuts, 1, "an edge length of 0.02 would take 1.");
+    refused(*good, " --iso 1299.5 --edge 1e-300" + seed, 1, "tetrahedra, more than 2e+08");
+    refused("", " --iso 1299.5", 2, "IMAGE is empty");
+    {
+      const Folder folder;
+      const auto o =
+          run(folder, program("image_to_mesh") + " \"" + good->string() + "\" --iso 1299.5 --edge 4" + seed +
+                          cuts + " -o a.vtu --report a.surface.vtp");
+      CHECK(o.status == 2);
+      CHECK(has(o.err, "error: two outputs are named \"a.surface.vtp\""));
+      CHECK(folder.files().empty());
+      if (std::filesystem::is_character_file("/dev/full")) {  // as a full disk
+        const auto full =
+            run(folder, program("image_to_mesh") + " \"" + good->string() + "\" --iso 1299.5 --edge 4" +
+                            seed + cuts + " -o a.vtu --report /dev/full");
+        CHECK(full.status == 1);
+        CHECK(has(full.err, "error: /dev/full: cannot be written: No space left on device"));
+        CHECK(folder.files().empty());
+        CHECK(std::filesystem::is_character_file("/dev/full"));
+      }
+    }
     refused(*good, "", 2, "--iso is needed");
     refused(*good, " --isso 3", 2, "unknown option --isso; did you mean --iso?");
     refused(*good, " --iso", 2, "--iso: \"-o\" is not a number");

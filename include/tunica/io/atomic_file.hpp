@@ -18,15 +18,23 @@
 
 namespace tunica::io {
 
-/// Until commit() the old file, if any, stays as it is; without commit() nothing is left behind.
-/// Every failure (no folder, no right, disk full) is an InputError that names the file.
+/// Until commit() the old file, if any, stays as it is; without commit() nothing is left behind. A link stays
+/// a link: what it leads to is replaced. A device or a pipe (/dev/stdout) cannot be: it is written to at
+/// once. Every failure (no folder, no right, disk full) is an InputError that names the file.
 class AtomicFile {
  public:
-  explicit AtomicFile(std::filesystem::path path) : path_(std::move(path)), aside_(path_) {
-    if (std::error_code e; std::filesystem::is_directory(path_, e))
-      throw InputError(path_.string() + ": is a folder");
-    aside_ += ".part";  // the same name each time: what a killed run left is overwritten
-    descriptor_ = ::open(aside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  explicit AtomicFile(std::filesystem::path path) : path_(std::move(path)), target_(path_) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path_, error);
+    if (std::filesystem::is_directory(status)) throw InputError(path_.string() + ": is a folder");
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+      descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    } else {
+      if (auto real = std::filesystem::canonical(path_, error); !error) target_ = std::move(real);
+      aside_ = target_;
+      aside_ += ".part";  // the same name each time: what a killed run left is overwritten
+      descriptor_ = ::open(aside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    }
     if (descriptor_ < 0) fail("cannot be written");
     buffer_.reserve(block);
   }
@@ -45,11 +53,12 @@ class AtomicFile {
   /// Puts the file in its place; after it the name holds either all of this or, on failure, what it held.
   void commit() {
     flush();
-    if (::fsync(descriptor_) != 0) fail("cannot be synchronised");
+    if (::fsync(descriptor_) != 0 && !aside_.empty()) fail("cannot be synchronised");
     if (::close(std::exchange(descriptor_, -1)) != 0) fail("cannot be closed");
-    if (::rename(aside_.c_str(), path_.c_str()) != 0) fail("cannot be renamed into its place");
+    if (aside_.empty()) return;
+    if (::rename(aside_.c_str(), target_.c_str()) != 0) fail("cannot be renamed into its place");
     aside_.clear();
-    const auto folder = path_.parent_path();
+    const auto folder = target_.parent_path();
     const int d = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (d < 0) return;  // a folder that cannot be opened cannot be synchronised; the file is there
     ::fsync(d);
@@ -82,7 +91,7 @@ class AtomicFile {
     aside_.clear();
   }
 
-  std::filesystem::path path_, aside_;
+  std::filesystem::path path_, target_, aside_;
   int descriptor_ = -1;
   std::string buffer_;
 };

@@ -4,6 +4,7 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/image/number_text.hpp"
+#include "tunica/io/lengths.hpp"
 #include "tunica/io/stl.hpp"
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/measures.hpp"
@@ -81,6 +82,7 @@ namespace detail {
   mesh::Surface& s = file.surface;
   const mesh::Topology t = mesh::topology(s);
   if (t.triangles == 0) throw InputError(name + ": every facet has two equal corners");
+  require_length(name, "the diagonal of the surface", mesh::bounding_box(s.nodes).diagonal());
   const std::string open =
       t.open_edges > 0 ? "; " + std::to_string(t.open_edges) + " edges have one facet only" : "";
   if (t.nonmanifold_edges > 0)

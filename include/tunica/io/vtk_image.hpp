@@ -4,6 +4,7 @@
 
 #include "tunica/image/image.hpp"
 #include "tunica/image/number_text.hpp"
+#include "tunica/io/lengths.hpp"
 #include "tunica/io/read_file.hpp"
 #include "tunica/io/vtk_legacy.hpp"
 
@@ -59,6 +60,7 @@ class VtkImageParser {
     }
     if (!found_) missing();
     if (!rectilinear_) even_axes();  // last: an axis is only made where the file holds its samples
+    for (std::size_t a = 0; a < 3; ++a) require_lengths(at().name(), "xyz"[a], axes_[a]);
     result_.image.axes = std::move(axes_);
     return std::move(result_);
   }

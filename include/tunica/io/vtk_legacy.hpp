@@ -3,6 +3,7 @@
 // held by division against the bytes that are there, before anything is allocated.
 #pragma once
 
+#include "tunica/core/text.hpp"
 #include "tunica/io/cursor.hpp"
 #include "tunica/io/vtk_types.hpp"
 
@@ -104,7 +105,12 @@ class LegacyFile {
 
   template <class S>
   [[noreturn]] void not_held(S value, std::size_t i, const std::string& what) const {
-    at.fail("value " + std::to_string(value) + " of " + what + " " + std::to_string(i) +
+    std::string text;
+    if constexpr (std::is_floating_point_v<S>)
+      text = seven_digits(static_cast<double>(value));
+    else
+      text = std::to_string(value);
+    at.fail("value " + text + " of " + what + " " + std::to_string(i) +
             " cannot be held exactly; read the image as double");
   }
 

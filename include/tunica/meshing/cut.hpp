@@ -2,6 +2,7 @@
 // Cuts by planes and discs: what lies in front is taken away and the opening closed by a flat, named cap.
 #pragma once
 
+#include "tunica/core/text.hpp"
 #include "tunica/meshing/contour.hpp"
 #include "tunica/meshing/cut_split.hpp"
 
@@ -45,10 +46,6 @@ struct [[nodiscard]] CutSurface {
 
 namespace detail {
 
-[[nodiscard]] inline std::string place(const Vec3& x) {
-  return "(" + std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", " + std::to_string(x[2]) + ")";
-}
-
 /// The triangles of the sections that a cut severs; MeshError where it severs nothing or only a part.
 [[nodiscard]] inline std::vector<char> severed(const mesh::Surface& s, const std::vector<Index>& twin,
                                                const std::vector<double>& distance, const PlaneFrame& frame,
@@ -63,14 +60,14 @@ namespace detail {
     if (part.nearest > cut.radius) continue;
     if (part.farthest > cut.radius)
       throw MeshError(cut.name + " does not sever the vessel round " + place(part.centre) + ": its radius " +
-                      std::to_string(cut.radius) + " is too small by " +
-                      std::to_string(part.farthest - cut.radius));
+                      seven_digits(cut.radius) + " is too small by " +
+                      seven_digits(part.farthest - cut.radius));
     met = true;
     for (const Index t : part.triangles) active[static_cast<std::size_t>(t)] = 1;
   }
   if (!met)
     throw MeshError(cut.name + " at " + place(cut.point) +
-                    " meets nothing: the nearest part lies at a distance of " + std::to_string(nearest));
+                    " meets nothing: the nearest part lies at a distance of " + seven_digits(nearest));
   return active;
 }
 

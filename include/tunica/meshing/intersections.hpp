@@ -2,6 +2,8 @@
 // Exact test of a triangle surface for self-intersection: signs of orient3d and orient2d alone decide.
 #pragma once
 
+#include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/mesh/measures.hpp"
 #include "tunica/meshing/predicates.hpp"
 #include "tunica/search/octree.hpp"
@@ -10,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -140,6 +143,15 @@ template <class Position>
       if (pairs.size() < limit && cross(nodes(t), nodes(other), position)) pairs.emplace_back(t, other);
   }
   return pairs;
+}
+
+/// MeshError, with a place, where a surface crosses itself.
+inline void require_no_crossing(const mesh::Surface& s) {
+  const auto pairs = self_intersections(s, 1);
+  if (pairs.empty()) return;
+  const auto& [t, u] = pairs.front();
+  throw MeshError("the surface crosses itself at " + place(mesh::triangle(s, t).centroid()) + ": triangles " +
+                  std::to_string(t) + " and " + std::to_string(u));
 }
 
 }  // namespace tunica::meshing

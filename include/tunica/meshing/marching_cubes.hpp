@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/image/image.hpp"
 #include "tunica/mesh/measures.hpp"
 #include "tunica/meshing/contour.hpp"
@@ -250,7 +251,7 @@ class MarchingSweep {
     bool some_inside = false;
     for (std::size_t n = 0; n < image_.values.size() && !some_inside; ++n)
       some_inside = static_cast<double>(image_.values[n]) >= iso_ && (kept_.empty() || kept_[n] != 0);
-    return "no edge of the grid crosses the iso-value " + std::to_string(iso_) + ": all of the image is " +
+    return "no edge of the grid crosses the iso-value " + seven_digits(iso_) + ": all of the image is " +
            (some_inside ? "inside" : "outside");
   }
 

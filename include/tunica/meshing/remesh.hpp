@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/expect.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/meshing/edit_flips.hpp"
 #include "tunica/meshing/editable_surface.hpp"
@@ -282,12 +283,11 @@ struct [[nodiscard]] Remeshed {
 /// with a place.
 [[nodiscard]] inline Remeshed remesh(const mesh::Surface& s, const RemeshOptions& options) {
   TUNICA_EXPECT(options.edge > 0, "the target edge length is positive");
-  if (const auto pairs = self_intersections(s, 1); !pairs.empty()) {
-    const Vec3 x = mesh::triangle(s, pairs[0].first).centroid();
-    throw MeshError("the surface crosses itself at (" + std::to_string(x[0]) + ", " + std::to_string(x[1]) +
-                    ", " + std::to_string(x[2]) + "): triangles " + std::to_string(pairs[0].first) + " and " +
-                    std::to_string(pairs[0].second));
-  }
+  constexpr double most_triangles = 2e7;  // they would not be held in memory
+  if (const double wanted = mesh::area(s) / options.edge / options.edge / 0.433; !(wanted <= most_triangles))
+    throw MeshError("an edge length of " + seven_digits(options.edge) + " would take " +
+                    seven_digits(wanted) + " triangles, more than " + seven_digits(most_triangles));
+  require_no_crossing(s);
   Remeshed r;
   r.report.volume_before = mesh::enclosed_volume(s);
   r.surface = detail::Remesher(s, options).run(r.report);
