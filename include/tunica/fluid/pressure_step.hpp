@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -54,8 +55,10 @@ class PressureStep {
 
   /// A x = b with x prescribed (on entry, at the nodes with prescribed pressure); elsewhere guess starts
   /// it. Without any prescribed pressure the mean of x is zero, and b loses what no x can balance.
+  /// most: of |b - A x|, on top of the relative tolerance.
   SolveReport solve(const Domain& domain, Vector b, double round_off, const Vector& guess,
-                    const la::KrylovOptions& options, Vector& x) {
+                    const la::KrylovOptions& options, Vector& x,
+                    double most = std::numeric_limits<double>::infinity()) {
     const auto& prescribed = domain.conditions.pressure_flags();
     operator_.apply(x, product_);
     round_off = std::max(round_off, la::norm(product_));
@@ -68,8 +71,10 @@ class PressureStep {
     if (enclosed) b -= (b.sum() / mass.sum()) * mass;
     la::KrylovOptions with_floor = options;
     with_floor.absolute = 1e-14 * round_off;
+    const double size = la::norm(b);
+    if (most < options.tolerance * size) with_floor.tolerance = most / size;
     SolveReport report = la::cg(operator_, TwoLevel{cholesky_, coarse_}, b, start_, with_floor);
-    if (report.status == Status::stalled && report.residual * la::norm(b) < operator_.round_off(start_))
+    if (report.status == Status::stalled && report.residual * size < operator_.round_off(start_))
       report.status = Status::converged;  // as exact as double precision can tell
     if (enclosed) start_.array() -= start_.dot(mass) / mass.sum();
     x += start_;
@@ -79,27 +84,30 @@ class PressureStep {
   /// From the predicted velocity u (3 x nodes) and the pressure p to those at the end of the pass.
   /// change: of the pressures on the pressure patches, 0 at the other nodes. force: [N/m3] or no columns.
   /// rotational: chi mu [Pa s]. u of the nodes with prescribed velocity stays.
-  SolveReport correct(const Domain& domain, const Field& force, double rotational, la::KrylovOptions options,
-                      const Vector& guess, const Vector& change, Field& u, Vector& p) {
+  SolveReport correct(const Domain& domain, const Field& force, double rotational,
+                      const la::KrylovOptions& options, const Vector& guess, const Vector& change, Field& u,
+                      Vector& p) {
     divergence(domain, u);
     stabilise(domain, p, force);
     if (!domain.conditions.any_pressure() && leaks(domain, u)) return {Status::diverged, 0, 1};
     right_ = -(divergence_ + stabilised_);
-    double through = 0;
+    double through = 0, along = 0;
     predicted_flux_.clear();
     for (const Condition& c : domain.conditions.list()) {
       predicted_flux_.push_back(Conditions::flux(domain.position, c.faces, u));
       through += std::abs(predicted_flux_.back()) / 2;
+      for (Eigen::Index f = 0; f < c.faces.cols(); ++f)
+        along +=
+            length(column(u, c.faces(0, f))) * length(Conditions::area_vector(domain.position, c.faces, f));
     }
     // The sum of the residual is the mass that is lost: at most sqrt(n) times its norm.
-    constexpr double loss = 1e-9, finest = 1e-12;  // of the flow; what round-off leaves of any residual
-    const double n = std::sqrt(static_cast<double>(p.size())), size = la::norm(right_);
-    if (size > 0 && through > 0)
-      options.tolerance = std::min(options.tolerance, std::max(finest, loss * through / (n * size)));
+    constexpr double loss = 1e-9, tangential = 1e-8;  // of the flow; of the flow along the boundary: none
+    double most = std::numeric_limits<double>::infinity();
+    if (through > tangential * along) most = loss * through / std::sqrt(static_cast<double>(p.size()));
     Vector increment = change;
     domain.conditions.keep_prescribed(increment);
     const SolveReport report =
-        solve(domain, right_, la::norm(divergence_) + la::norm(stabilised_), guess, options, increment);
+        solve(domain, right_, la::norm(divergence_) + la::norm(stabilised_), guess, options, increment, most);
     operator_.apply_all(increment, product_);
     reaction_ = right_ - product_;  // the flux that leaves at nodes where the pressure is prescribed
     // u = u* - gamma M^-1 int N grad dp

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+// The discrete operators of a step, each against what it must do to simple fields.
+#include "support/flow.hpp"
+#include "tunica/fluid/bdf.hpp"
+#include "tunica/fluid/boundary_terms.hpp"
+#include "tunica/fluid/coarse_space.hpp"
+#include "tunica/fluid/consistent_mass.hpp"
+#include "tunica/fluid/domain.hpp"
+#include "tunica/fluid/element.hpp"
+#include "tunica/fluid/field.hpp"
+#include "tunica/fluid/momentum.hpp"
+#include "tunica/fluid/pressure_operator.hpp"
+#include "tunica/fluid/rheology.hpp"
+#include "tunica/fluid/stabilization.hpp"
+#include "tunica/la/vector_ops.hpp"
+#include "tunica/meshing/box.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+using namespace tunica;
+
+namespace {
+
+/// A shaken box of unit edges with all that a Domain refers to.
+struct Cube {
+  explicit Cube(int n) : mesh(shaken(n)), pattern(mesh), conditions(mesh) {
+    REQUIRE(tets.update(mesh.nodes, mesh.cells));
+    inverse_mass.setZero(mesh.node_count());
+    for (Index e = 0; e < mesh.cell_count(); ++e)
+      for (int a = 0; a < 4; ++a) inverse_mass[mesh.cells(a, e)] += tets[e].volume / 4;
+    inverse_mass = inverse_mass.cwiseInverse().eval();
+  }
+  static mesh::TetMesh shaken(int n) {
+    auto mesh = meshing::box_tets(n);
+    test::shake(mesh, 0.2 / n);
+    return mesh;
+  }
+  [[nodiscard]] fluid::Domain domain() const {
+    return {pattern, mesh.cells, tets, mesh.nodes, inverse_mass, conditions};
+  }
+
+  mesh::TetMesh mesh;
+  fluid::Pattern pattern;
+  fluid::Conditions conditions;
+  fem::P1Tets tets;
+  Eigen::VectorXd inverse_mass;
+};
+
+Eigen::VectorXd noise(Eigen::Index n, std::uint64_t seed) {
+  test::Noise next(seed);
+  Eigen::VectorXd x(n);
+  for (double& value : x) value = next();
+  return x;
+}
+
+}  // namespace
+
+TEST_SUITE("unit") {
+  TEST_CASE("fluid: backward differences are exact for parabolas at any ratio of steps") {
+    const auto f = [](double t) { return 3 - 2 * t + 5 * t * t; };
+    for (const double last : {0.1, 0.05, 0.4}) {
+      const double t = 0.7, dt = 0.1;
+      const fluid::Bdf bdf = fluid::bdf2(dt, last);
+      const double rate = bdf.now * f(t) + bdf.last * f(t - dt) + bdf.before * f(t - dt - last);
+      CHECK(rate == doctest::Approx(-2 + 10 * t));
+      CHECK(bdf.extrapolate_last * (t - dt) + bdf.extrapolate_before * (t - dt - last) == doctest::Approx(t));
+    }
+    CHECK(fluid::bdf1(0.1).now == doctest::Approx(10));
+  }
+
+  TEST_CASE("fluid: stabilisation times follow their limits and hold no time step") {
+    const fluid::Fic fic;
+    CHECK(fic.mass(1050, 0.0035, 1e-3, 0) == doctest::Approx(1e-6 / (8 * 0.0035)));
+    CHECK(fic.mass(1050, 1e-9, 1e-3, 0.5) == doctest::Approx(1e-3 / (2 * 1050 * 0.5)));
+    CHECK(fic.momentum(1050, 1e-9, 1e-3, 2e-4, 0.5) == doctest::Approx(2e-4 / (2 * 1050 * 0.5)));
+    CHECK(fluid::Fic{.wave_speed = 5}.mass(1050, 1e-9, 1e-3, 0) == doctest::Approx(1e-3 / (2 * 1050 * 5)));
+    CHECK(fluid::Unstabilized{}.mass(1050, 0.0035, 1e-3, 1) == 0);
+    CHECK(fluid::constant_viscosity<fluid::Newtonian>);
+  }
+
+  TEST_CASE("fluid: gradients on an element are those of a linear field") {
+    const Cube box(3);
+    Eigen::Matrix3d slope;
+    slope << 1, 2, -3, 0.5, -1, 4, 2, 0, 7;
+    const Points<3> u = slope * box.mesh.nodes;
+    const Eigen::VectorXd p = (slope.row(0) * box.mesh.nodes).transpose();
+    for (Index e = 0; e < box.mesh.cell_count(); e += 7) {
+      const auto& tet = box.tets[e];
+      const auto ue = fluid::nodal(u, box.mesh.cells, e);
+      const auto pe = fluid::nodal(p, box.mesh.cells, e);
+      CHECK((fluid::gradient(ue, tet.grad) - slope).norm() < 1e-12);
+      CHECK((fluid::gradient(pe, tet.grad) - slope.row(0).transpose()).norm() < 1e-12);
+      CHECK((fluid::mean(ue) - ue.rowwise().mean()).norm() < 1e-14);
+      CHECK(fluid::along(Vec3(1, 2, 3), tet.grad, 2) == doctest::Approx(Vec3(1, 2, 3).dot(tet.grad.col(2))));
+      // t_m and h_a know the direction: along an axis of a box the element is as long as its edge at most
+      const auto flow =
+          fluid::element_flow(fluid::Newtonian{.density = 1, .viscosity = 1e-9}, fluid::Fic{}, tet, ue, ue);
+      CHECK(flow.viscosity == 1e-9);
+      CHECK(flow.stabilisation > 0);
+    }
+  }
+
+  TEST_CASE("fluid: nodal fields add and scale and a NaN among them is found") {
+    Points<3> a = Points<3>::Constant(3, 4, 2), b = Points<3>::Constant(3, 4, 5), y;
+    fluid::combine(3, a, -1, b, y);
+    CHECK((y.array() == 1).all());
+    fluid::combine(2, y, 1, y, y);  // in place
+    CHECK((y.array() == 3).all());
+    fluid::add(y, 1, 2, Vec3(1, 2, 3));
+    CHECK(fluid::column(y, 1) == Vec3(5, 7, 9));
+    fluid::scale_columns(y, Eigen::Vector4d(1, 10, 1, 1));
+    CHECK(fluid::column(y, 1) == Vec3(50, 70, 90));
+    CHECK(fluid::finite(y.data(), y.size()));
+    y(2, 3) = std::numeric_limits<double>::quiet_NaN();
+    CHECK(!fluid::finite(y.data(), y.size()));
+    y(2, 3) = std::numeric_limits<double>::infinity();
+    CHECK(!fluid::finite(y.data(), y.size()));
+    CHECK((fluid::face_load(12, Vec3(1, 2, 3)) - Vec3(7, 8, 9)).norm() < 1e-14);
+  }
+
+  TEST_CASE("fluid: the pressure operator is symmetric and its stabilisation spares linear pressures") {
+    const Cube box(4);
+    const Index n = box.mesh.node_count();
+    const std::vector<double> tau(static_cast<std::size_t>(box.mesh.cell_count()), 0.3);
+    fluid::PressureOperator T(box.pattern);
+    T.assemble(box.pattern, box.mesh.cells, box.tets, tau, 0, std::vector<char>(std::size_t(n), 0));
+    Eigen::VectorXd y, z;
+    T.apply(Eigen::VectorXd(Eigen::VectorXd::Ones(n)), y);
+    CHECK(y.norm() < 1e-13);
+    const Eigen::VectorXd linear = (Vec3(1, -2, 3).transpose() * box.mesh.nodes).transpose();
+    T.apply(linear, y);
+    CHECK(y.norm() < 1e-13);
+    for (int k = 1; k < 5; ++k) {
+      const Eigen::VectorXd p = noise(n, std::uint64_t(k)), q = noise(n, std::uint64_t(k) + 50);
+      T.apply(p, y), T.apply(q, z);
+      CHECK(q.dot(y) == doctest::Approx(p.dot(z)));
+      CHECK(p.dot(y) > 0);
+      CHECK(T.round_off(p) < 1e-10 * y.norm());
+    }
+    // With gamma alone it is the Laplacian: (grad x, grad x) is the volume.
+    T.assemble(box.pattern, box.mesh.cells, box.tets, std::vector<double>(tau.size(), 0), 2,
+               std::vector<char>(std::size_t(n), 0));
+    const Eigen::VectorXd x = box.mesh.nodes.row(0).transpose();
+    T.apply(x, y);
+    CHECK(x.dot(y) == doctest::Approx(2));
+  }
+
+  TEST_CASE("fluid: the consistent mass projects a field of the velocities on itself") {
+    Cube box(4);
+    for (const auto* side : test::box_sides) box.conditions[side].kind = fluid::Kind::pressure;
+    for (const bool open : {true, false}) {
+      if (!open) box.conditions["x0"].kind = fluid::Kind::wall;
+      box.conditions.flag();
+      fluid::ConsistentMass<> mass(box.pattern);
+      mass.assemble(box.domain());
+      Points<3> w(3, box.mesh.node_count());
+      for (Eigen::Index i = 0; i < w.cols(); ++i) {
+        const Vec3 x = box.mesh.nodes.col(i);
+        w.col(i) = open ? Vec3(1 + x[0], x[1] * x[2], -2) : Vec3(x[0], 0, 2 * x[0]);  // 0 on the wall
+      }
+      Points<3> g = Points<3>::Zero(3, w.cols());
+      for (Index e = 0; e < box.mesh.cell_count(); ++e) {
+        const auto we = fluid::nodal(w, box.mesh.cells, e);
+        for (int a = 0; a < 4; ++a)
+          g.col(box.mesh.cells(a, e)) += box.tets[e].volume / 20 * (we.rowwise().sum() + we.col(a));
+      }
+      REQUIRE(mass.solve(box.domain(), g));
+      CHECK((g - w).norm() < 1e-3 * w.norm());
+    }
+  }
+
+  TEST_CASE("fluid: the coarse space holds linear pressures exactly") {
+    // (L + mean) p = r on the coarse space alone: a linear p is one of its functions.
+    const Cube box(8);
+    const Index n = box.mesh.node_count();
+    const std::vector<double> tau(static_cast<std::size_t>(box.mesh.cell_count()), 0);
+    std::vector<char> prescribed(static_cast<std::size_t>(n), 0);
+    for (Index i = 0; i < n; ++i) prescribed[std::size_t(i)] = box.mesh.nodes(0, i) < 1e-9;
+    fluid::PressureOperator L(box.pattern);
+    L.assemble(box.pattern, box.mesh.cells, box.tets, tau, 1, prescribed);
+    fluid::CoarseSpace<> coarse(box.mesh.nodes, 1);
+    CHECK(coarse.size() > 8);
+    coarse.compute(L.preconditioning(), L.entries(), L.inverse_mass(), prescribed);
+    const Eigen::VectorXd p = box.mesh.nodes.row(0).transpose();  // 0 where it is prescribed
+    Eigen::VectorXd r, z = Eigen::VectorXd::Zero(n);
+    L.apply(p, r);
+    coarse.add(r, z);
+    CHECK((z - p).norm() < 1e-10 * p.norm());
+  }
+
+  TEST_CASE("fluid: the momentum matrix transports a linear field exactly") {
+    // (C + K) u for u linear, a constant: row sums against 1 give rho a.grad u times the volume.
+    const Cube box(3);
+    const Index n = box.mesh.node_count();
+    const Vec3 a(1, -2, 0.5);
+    const Points<3> stream = a.replicate(1, n), zero = Points<3>::Zero(3, n), none(3, 0);
+    const Eigen::VectorXd p = Eigen::VectorXd::Zero(n);
+    auto matrix = box.pattern.matrix<Eigen::RowMajor>();
+    Points<3> right;
+    const fluid::Newtonian fluid{.density = 2, .viscosity = 0.1};
+    fluid::assemble_momentum(
+        box.domain(), fluid, fluid::Fic{},
+        {.a = stream, .u = stream, .history = zero, .p = p, .force = none, .smoothed = zero, .rate = 0},
+        matrix, right);
+    const Eigen::VectorXd x = box.mesh.nodes.row(1).transpose();
+    Eigen::VectorXd y;
+    la::multiply<1>(matrix, x, y);
+    CHECK(y.sum() == doctest::Approx(2 * a[1]));
+    la::multiply<1>(matrix, Eigen::VectorXd::Ones(n), y);
+    CHECK(y.norm() < 1e-13);
+    CHECK(right.norm() == 0);
+    Points<3> smooth;
+    const Points<3> u = Eigen::Vector3d(1, 2, 3).asDiagonal() * box.mesh.nodes;
+    fluid::smooth_convection(box.domain(), stream, u, smooth);
+    CHECK((smooth.colwise() - Vec3(1, -4, 1.5)).cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
