@@ -169,6 +169,36 @@ TEST_SUITE("unit") {
     CHECK(length == doctest::Approx(4 * std::numbers::pi * radius).epsilon(0.05));
   }
 
+  TEST_CASE("meshing: the rank cut keeps sharp edges and does not chase waves in the normals") {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 0.5).normalized()).toRotationMatrix();
+    const double h = 0.2;
+    const auto box = [&](const Vec3& x, const Vec3& half) {
+      const Vec3 y = (turn.transpose() * x).cwiseAbs() - half;
+      return y.cwiseMax(0).norm() + std::min(0.0, y.maxCoeff());
+    };
+    const auto farthest = [&](const auto& level, double cut) {
+      const auto field = [&](const Vec3& x) { return -level(x); };
+      const auto grid = meshing::hermite_of_field(
+          field, meshing::uniform_axes({Vec3(-2, -2, -2), Vec3(2.03, 2.01, 2.07)}, h));
+      const auto surface = meshing::dual_contour(grid, {.qef = {.cut = cut}, .hold = -0.5});
+      double most = 0;
+      for (Index n = 0; n < surface.node_count(); ++n)
+        most = std::max(most, std::abs(level(Vec3(surface.nodes.col(n)))) / h);
+      return most;
+    };
+    const auto cube = [&](const Vec3& x) { return box(x, Vec3(1, 1, 1)); };
+    const auto plate = [&](const Vec3& x) { return box(x, Vec3(1, 0.8, 0.75 * h)); };
+    const auto waves = [&](const Vec3& x) {
+      return x.norm() - 1 + 0.01 * std::sin(37 * x[0]) * std::sin(41 * x[1] + 1) * std::sin(43 * x[2] + 2);
+    };
+    const double cut = meshing::QefOptions{}.cut;
+    CHECK(farthest(cube, cut) < 1e-6);
+    CHECK(farthest(plate, cut) < 1e-6);
+    MESSAGE("waves of 0.05 h: off by " << farthest(waves, cut) << " h, with a cut of 0.05 by "
+                                       << farthest(waves, 0.05) << " h");
+    CHECK(farthest(waves, cut) < 0.6 * farthest(waves, 0.05));
+  }
+
   TEST_CASE("meshing: dual contouring of a closed surface keeps its flat ends and labels them") {
     const auto surface = cylinder(4, 20, 96, tilt);
     const double h = 0.8;

@@ -56,9 +56,12 @@ struct QefMinimum {
   double error = 0;  // E [length^2]
 };
 
-/// Singular values of the normals below this share of the largest are cut: a surface that turns by
-/// less than about 0.2 rad to either side in a cell is a plane there: measured on smooth vessels, smaller
-/// cuts chase noise in the normals. [JU02, 2.3]
+/// Singular values of the normals below this share of the largest are cut [JU02, 2.3]: a surface that turns
+/// by less than about 0.2 rad to either side in a cell is a plane there. Measured with vertices that may
+/// leave their cells, spacing h: a turned cube and a plate of 1.5 h are exact for every cut from 0.03 to 0.4;
+/// the rim of a cylinder of radius 4 h is met within 0.008 h at 0.05 and 0.017 h at 0.2; a sphere of radius 5
+/// h with waves of 0.05 h in its level is missed by 0.79 h at 0.03, 0.45 h at 0.05, 0.23 h at 0.1 and 0.20 h
+/// from 0.2 on.
 struct QefOptions {
   double cut = 0.2;
 };
