@@ -38,6 +38,7 @@ class FrontEdges {
     for (int turn = 0; turn < 2; ++turn)
       if (turn == 0 ? flip_along(a, b) : flip_along(b, a)) return true;
     if (means == Means::flips) return false;
+    if (help(a, b)) return true;
     Index u = a;
     std::vector<Index> goals{b};  // nodes of the chain ahead, the nearest last
     for (int step = 0; step < longest_chain; ++step) {
@@ -94,6 +95,10 @@ class FrontEdges {
 
  private:
   static constexpr int longest_chain = 60, most_flips = 25, most_deep = 3;
+  static constexpr int most_helpers = 12;
+  // Six directions, none in a plane that structured surfaces are likely to have.
+  static constexpr std::array<std::array<double, 2>, 6> sixths{
+      {{0.342, 0.940}, {-0.342, -0.940}, {0.985, 0.174}, {-0.985, -0.174}, {0.643, -0.766}, {-0.643, 0.766}}};
   static constexpr double flat = 1e-6;  // sine of a dihedral angle that rounding may turn over
 
   struct Hit {
@@ -146,6 +151,24 @@ class FrontEdges {
     return false;
   }
 
+  /// Points beside the segment, off the surface, that make room for flips.
+  bool help(Index a, Index b) {
+    const Vec3 along = c_.point(b) - c_.point(a);
+    const Vec3 u = along.unitOrthogonal() * along.norm(), v = along.normalized().cross(u);
+    int left = most_helpers;
+    for (const double distance : {0.31, 0.11, 0.033})
+      for (const double at_segment : {0.48, 0.27, 0.71})
+        for (const auto& [cosine, sine] : sixths) {
+          const Vec3 x = c_.point(a) + at_segment * along + distance * (cosine * u + sine * v);
+          const std::array<Index, 1> seed{containing(c_, x, c_.tet_of[at(a)])};
+          if (seed[0] < 0 || insert_.insert(x, seed, 1e-3) < 0) continue;
+          deep_left_ = most_deep;
+          if (flip_along(a, b) || flip_along(b, a)) return true;
+          if (--left == 0) return false;
+        }
+    return false;
+  }
+
   bool flip_face(const Hit& hit, Index u) {
     const Side s = c_.across(hit.tet, hit.face_index);
     if (s < 0 || c_.mark(hit.tet, hit.face_index) >= 0) return false;
@@ -159,6 +182,8 @@ class FrontEdges {
 
   bool remove(Index t, Index x, Index y) {
     if (s_.locked(x, y)) return false;
+    if (!c_.alive(t) || !c_.has(t, x) || !c_.has(t, y)) t = c_.tet_with(x, y, star_);  // changed since
+    if (t < 0) return true;
     const auto any = [](Index, Index) { return true; };
     if (flips_.remove_edge(t, x, y, 0, any)) return true;
     if (deep_left_-- <= 0) return false;

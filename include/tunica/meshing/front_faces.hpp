@@ -22,8 +22,11 @@ namespace tunica::meshing {
 
 class FrontFaces {
  public:
-  FrontFaces(TetComplex& complex, FrontSurface& surface)
-      : c_(complex), s_(surface), flips_(complex), insert_(complex, surface) {}
+  /// Which piece of a split triangle comes next: the one that exact signs tell, or a node that is known
+  /// to lie on the triangle. Few Steiner points among coplanar triangles need the latter, many the former.
+  enum class Trust { signs, places };
+  FrontFaces(TetComplex& complex, FrontSurface& surface, Trust trust)
+      : c_(complex), s_(surface), trust_(trust), flips_(complex), insert_(complex, surface) {}
 
   Index steiner = 0;  // points put on faces
 
@@ -166,6 +169,21 @@ class FrontFaces {
     const Triple& tri = s_.triangles[at(f)];
     const Vec3 normal = (c_.point(tri[1]) - c_.point(tri[0])).cross(c_.point(tri[2]) - c_.point(tri[0]));
     const Vec3 left = normal.cross(c_.point(q) - c_.point(p)).normalized();
+    const auto turn = [&](Index n) {
+      const Vec3 x = c_.point(n) - c_.point(p);
+      return std::atan2(normal.normalized().dot(x), left.dot(x));
+    };
+    const auto nearest_on = [&](double within) {
+      Index nearest = -1;
+      for (std::size_t i = 0; i < m; ++i) {
+        const Vec3 x = c_.point(link[i]) - c_.point(p);
+        if (!s_.on(link[i], f) || !(left.dot(x) > 1e-6 * x.norm())) continue;  // none in line with p and q
+        if (std::abs(turn(link[i])) < within) within = std::abs(turn(link[i])), nearest = link[i];
+      }
+      return nearest;
+    };
+    if (trust_ == Trust::places)
+      if (const Index w = nearest_on(1e-11); w >= 0) return w;
     std::vector<int> sign(m);
     for (std::size_t i = 0; i < m; ++i) sign[i] = side(link[i], f);
     // Around (p, q) the left half of the plane is met from below to above.
@@ -181,16 +199,7 @@ class FrontFaces {
         return split(f, flips_.ring.tets[i], u, v);
     }
     // Rounded Steiner points have spoilt the signs: the directions decide.
-    const auto turn = [&](Index n) {
-      const Vec3 x = c_.point(n) - c_.point(p);
-      return std::atan2(normal.normalized().dot(x), left.dot(x));
-    };
-    double best = 0.5;  // [rad]
-    Index nearest = -1;
-    for (std::size_t i = 0; i < m; ++i)
-      if (s_.on(link[i], f) && std::abs(turn(link[i])) < best)
-        best = std::abs(turn(link[i])), nearest = link[i];
-    if (nearest >= 0) return nearest;
+    if (const Index w = nearest_on(0.5); w >= 0) return w;
     for (std::size_t i = 0; i < m; ++i) {
       const Index u = link[i], v = link[(i + 1) % m];
       if (turn(u) < 0 && turn(v) >= 0 && turn(v) - turn(u) < std::numbers::pi)
@@ -231,6 +240,7 @@ class FrontFaces {
 
   TetComplex& c_;
   FrontSurface& s_;
+  Trust trust_;
   CavityFlips flips_;
   CavityInsert insert_;
   std::vector<Index> star_;

@@ -76,7 +76,7 @@ class FrontRecovery {
     if (way_ == Way::backward)
       std::reverse(edges.begin(), edges.end()), std::reverse(faces.begin(), faces.end());
     FrontEdges by_edge(c_, s_);
-    FrontFaces by_face(c_, s_);
+    FrontFaces by_face(c_, s_, way_ == Way::halving ? FrontFaces::Trust::signs : FrontFaces::Trust::places);
     using Means = FrontEdges::Means;
     for (int round = 0; round < flip_rounds; ++round)
       std::erase_if(edges, [&](Index e) { return by_edge.recover(e, Means::flips); });

@@ -6,6 +6,7 @@
 #include "tunica/meshing/cavity_polygon.hpp"
 #include "tunica/meshing/front_edges.hpp"
 #include "tunica/meshing/front_surface.hpp"
+#include "tunica/meshing/improve.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,16 +31,20 @@ class FrontRelease {
       if (owner.face >= 0) waiting.push_back(node);
     for (const auto& [node, owner] : s_.owners())
       if (owner.edge >= 0) waiting.push_back(node);
+    // Nearly flat tetrahedra pin a point to where it is: flips take them away.
+    if (!waiting.empty()) Improve::flip(c_, pinning);
     while (!waiting.empty()) {
       const std::size_t before = waiting.size();
       std::erase_if(waiting, [&](Index node) { return release(node); });
       if (waiting.size() == before)
         throw RecoveryFailure{c_.point(waiting[0]), "a point cannot leave the surface"};
+      if (!waiting.empty()) Improve::flip(c_, pinning);
     }
   }
 
  private:
   static constexpr int halvings = 45, most_corners = 200;
+  static constexpr double pinning = 1e-3;  // sine of a dihedral angle
 
   template <class I>
   [[nodiscard]] static std::size_t at(I i) {
@@ -56,6 +61,7 @@ class FrontRelease {
     constexpr double good = 0.05, any = 0;
     const Vec3 origin = c_.point(node);
     find_loops(node, origin);
+    if (loops_.empty()) throw RecoveryFailure{origin, "a point has lost the surface"};
     return contract(node, good) || move(node, origin) || contract(node, any);
   }
 

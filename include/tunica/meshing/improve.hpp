@@ -33,6 +33,19 @@ class Improve {
     return work.counts_;
   }
 
+  /// Flips alone: tetrahedra with a sine below the target go where that makes the worst better.
+  static void flip(TetComplex& complex, double target) {
+    constexpr int most = 4;
+    Improve work(complex, {}, target);
+    for (int sweep = 0; sweep < most; ++sweep) {
+      bool changed = false;
+      for (const Index t : work.bad())
+        if (complex.alive(t) && work.is_bad(t))
+          changed = work.remove_an_edge(t) || work.remove_a_face(t) || changed;
+      if (!changed) return;
+    }
+  }
+
  private:
   Improve(TetComplex& complex, std::span<const double> limit, double target)
       : m_(complex, static_cast<Index>(limit.size())),

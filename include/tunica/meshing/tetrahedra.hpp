@@ -206,8 +206,8 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
     if (attempt + 1 < attempts) inner = Lattice(distances, size, lattice).points();
     TetComplex complex;
     try {
-      constexpr std::array ways{FrontRecovery::Way::forward, FrontRecovery::Way::halving,
-                                FrontRecovery::Way::backward, FrontRecovery::Way::halving};
+      constexpr std::array ways{FrontRecovery::Way::forward, FrontRecovery::Way::backward,
+                                FrontRecovery::Way::halving, FrontRecovery::Way::halving};
       const RecoveryCounts counts =
           FrontRecovery::run(complex, front, nodes, inner, ways[static_cast<std::size_t>(attempt)]);
       result.report.missing_edges = counts.missing_edges;
