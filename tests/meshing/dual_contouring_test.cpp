@@ -7,6 +7,7 @@
 #include "tunica/meshing/contour_triangles.hpp"
 #include "tunica/meshing/hermite_field.hpp"
 #include "tunica/meshing/hermite_surface.hpp"
+#include "tunica/meshing/quad_lens.hpp"
 #include "tunica/meshing/tube.hpp"
 
 #include <doctest/doctest.h>
@@ -167,6 +168,26 @@ TEST_SUITE("unit") {
     CHECK(worst < 0.05 * h);
     CHECK(plane < 1e-6 * h);  // normals of the field are differenced
     CHECK(length == doctest::Approx(4 * std::numbers::pi * radius).epsilon(0.05));
+  }
+
+  TEST_CASE("meshing: lenses magnify a place and can be looked through both ways") {
+    meshing::Lenses lenses;
+    CHECK(lenses.magnified(Vec3(1, 2, 3)) == Vec3(1, 2, 3));
+    lenses.add({.centre = Vec3(1, 0, 0), .radius = 2, .power = 1});
+    lenses.add({.centre = Vec3(1.5, 0.5, -0.2), .radius = 0.7, .power = 4});
+    CHECK(lenses.count() == 2);
+    const meshing::Lens one{.centre = Vec3(1, 0, 0), .radius = 2, .power = 3};
+    double before = 0;
+    for (int i = 1; i <= 400; ++i) {
+      const Vec3 x(1 + 0.02 * i, 0.3 * std::sin(i), 0.2 * std::cos(3 * i));
+      CHECK((lenses.restored(lenses.magnified(x)) - x).norm() < 1e-12 * (1 + x.norm()));
+      const double now = one.magnified(Vec3(1 + 0.02 * i, 0, 0))[0] - 1;
+      CHECK(now - before > (1 - 3.0 / 8) * 0.02 * (1 - 1e-9));  // along the rays no shorter than 1 - a/8
+      before = now;
+    }
+    const double step = 1e-6;
+    const Vec3 moved = one.magnified(Vec3(1 + step, 0, 0)) - one.magnified(Vec3(1, 0, 0));
+    CHECK(moved[0] / step == doctest::Approx(4));
   }
 
   TEST_CASE("meshing: the rank cut keeps sharp edges and does not chase waves in the normals") {
