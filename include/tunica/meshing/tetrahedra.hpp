@@ -57,10 +57,13 @@ namespace detail {
 
 /// Six times the enclosed volume about `origin`, in long double.
 [[nodiscard]] inline long double six_volumes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  using Long = Eigen::Matrix<long double, 3, 1>;
-  const Long u = b.cast<long double>() - a.cast<long double>(),
-             v = c.cast<long double>() - a.cast<long double>();
-  return u.cross(v).dot(Long(d.cast<long double>() - a.cast<long double>()));
+  const auto to = [&a](const Vec3& p, Eigen::Index k) {
+    return static_cast<long double>(p[k]) - static_cast<long double>(a[k]);
+  };
+  const auto minor = [&](Eigen::Index i, Eigen::Index j) {
+    return to(b, i) * to(c, j) - to(b, j) * to(c, i);
+  };
+  return minor(1, 2) * to(d, 0) + minor(2, 0) * to(d, 1) + minor(0, 1) * to(d, 2);
 }
 
 inline void measure_surface(const FrontSurface& s, const std::vector<Vec3>& nodes, FillReport& r) {
