@@ -113,10 +113,12 @@ TEST_SUITE("hard") {
       check_wall(even, result);
       CHECK(result.inner.cell_count() == doctest::Approx(3785 / (edge * edge)).epsilon(0.25));
       CHECK(result.report.extrusion.quality.scaled_jacobian.least >= 0.2);
-      // The tip of a blind stub, a spike of less than 0.5 mm at (211.2, 118.9, 34.6), is out of reach of
-      // sound hexahedra: the report must say how far and where, and be right, and nothing else may be so far
-      // off.
+      // The criterion, a tenth of the edge, is not reached: most at the tip of a blind stub at (211.2, 118.9,
+      // 34.6), by at most 0.21 edge at the faces. The report must say so, how far and where, and be right; the
+      // bounds below hold what is reached so that it is not lost again.
       const auto& d = result.report.distance;
+      WARN(d.quads_max < 0.1 * edge);
+      WARN(d.wall_max < 0.1 * edge);
       CHECK_FALSE(result.report.within);
       CHECK(farthest_from(result.inner, even) == doctest::Approx(d.wall_max).epsilon(0.05));
       CHECK((d.wall_place - Vec3(211.2, 118.9, 34.6)).norm() < 1);
