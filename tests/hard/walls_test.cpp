@@ -114,8 +114,8 @@ TEST_SUITE("hard") {
       CHECK(result.inner.cell_count() == doctest::Approx(3785 / (edge * edge)).epsilon(0.25));
       CHECK(result.report.extrusion.quality.scaled_jacobian.least >= 0.2);
       // The criterion, a tenth of the edge, is not reached: most at the tip of a blind stub at (211.2, 118.9,
-      // 34.6), by at most 0.21 edge at the faces. The report must say so, how far and where, and be right; the
-      // bounds below hold what is reached so that it is not lost again.
+      // 34.6), by at most 0.21 edge at the faces. The report must say so, how far and where, and be right;
+      // the bounds below hold what is reached so that it is not lost again.
       const auto& d = result.report.distance;
       WARN(d.quads_max < 0.1 * edge);
       WARN(d.wall_max < 0.1 * edge);
