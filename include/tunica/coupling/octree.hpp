@@ -18,7 +18,7 @@
 namespace tunica::coupling {
 
 struct OctreeOptions {
-  double largest_gap = 0.5;  // [-] of the face's diagonal: farther apart the surfaces are not one interface
+  double largest_gap = 0.5;  // [-] of the faces' mean diagonal; farther apart they are not one interface
 };
 
 /// u_f = H u_s, f_s = H^T f_f. A row of H holds the shape functions of the structure's face at the
@@ -43,8 +43,12 @@ class Octree {
       return x;
     };
     std::vector<Box> boxes(static_cast<std::size_t>(faces));
-    for (Index f = 0; f < faces; ++f)
-      for (const auto& x : corners(f).colwise()) boxes[static_cast<std::size_t>(f)].extend(Vec3(x));
+    double diagonal = 0;  // [m]
+    for (Index f = 0; f < faces; ++f) {
+      Box& box = boxes[static_cast<std::size_t>(f)];
+      for (const auto& x : corners(f).colwise()) box.extend(Vec3(x));
+      diagonal += box.diagonal() / faces;
+    }
     const search::Octree tree(boxes);
     slots_.resize(Face::nodes, static_cast<Eigen::Index>(to.size()));
     weights_.resize(Face::nodes, static_cast<Eigen::Index>(to.size()));
@@ -55,7 +59,7 @@ class Octree {
           tree.nearest(x, [&](Index f) { return closest_point(Face{}, corners(f), x).squared_distance; });
       const auto point = closest_point(Face{}, corners(near.item), x);
       const double gap = std::sqrt(point.squared_distance);
-      if (!(gap <= options.largest_gap * boxes[static_cast<std::size_t>(near.item)].diagonal()))
+      if (!(gap <= options.largest_gap * diagonal))
         throw MeshError("transfer: the fluid's wall node at " + std::to_string(x[0]) + " " +
                         std::to_string(x[1]) + " " + std::to_string(x[2]) + " lies " + std::to_string(gap) +
                         " away from the structure");
