@@ -70,6 +70,8 @@ struct Lumen {
   mesh::TetMesh mesh = meshing::lumen(meshing::Lumen{.radius = 5_mm, .length = 50_mm, .cells = {5, 30, 66}});
   fluid::Pattern pattern{mesh};
   fem::P1Tets tets;
+  fluid::Conditions conditions{mesh};
+  Eigen::VectorXd inverse_mass = Eigen::VectorXd::Ones(mesh.node_count());
   fluid::Newtonian blood{.density = 1050_kg_m3, .viscosity = 3.5_mPas};
   Points<3> u = Points<3>::Zero(3, mesh.node_count());
 
@@ -99,11 +101,11 @@ void p1_momentum(benchmark::State& state) {
   constexpr double rate = 1.5 / 1e-3;  // BDF2 at a step of 1 ms [1/s]
   const fluid::MomentumFields fields{
       .a = lumen.u, .u = lumen.u, .history = zero, .p = p, .force = no_force, .smoothed = zero, .rate = rate};
+  const fluid::Domain domain{lumen.pattern,    lumen.mesh.cells,   lumen.tets,
+                             lumen.mesh.nodes, lumen.inverse_mass, lumen.conditions};
   auto matrix = lumen.pattern.matrix<Eigen::RowMajor>();
   Points<3> right;
-  for (auto _ : state)
-    fluid::assemble_momentum(lumen.pattern, lumen.mesh.cells, lumen.tets, lumen.blood, fluid::Fic{}, fields,
-                             matrix, right);
+  for (auto _ : state) fluid::assemble_momentum(domain, lumen.blood, fluid::Fic{}, fields, matrix, right);
   state.SetItemsProcessed(state.iterations() * lumen.mesh.cell_count());
   // a uniform velocity is neither convected nor sheared: the entries sum to rho rate V
   double volume = 0;
