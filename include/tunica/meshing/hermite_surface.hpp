@@ -4,10 +4,10 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/cap_planes.hpp"
 #include "tunica/meshing/hermite.hpp"
-#include "tunica/meshing/vec.hpp"
 #include "tunica/meshing/vertex_normals.hpp"
 
 #include <algorithm>

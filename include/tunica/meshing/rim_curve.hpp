@@ -3,10 +3,10 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/cap_planes.hpp"
-#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // Quadrilaterals cut into triangles along the diagonal that leaves the larger smallest angle.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/triangle.hpp"
-#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <array>

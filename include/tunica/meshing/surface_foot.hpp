@@ -3,9 +3,9 @@
 #pragma once
 
 #include "tunica/core/expect.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/measures.hpp"
 #include "tunica/mesh/mesh.hpp"
-#include "tunica/meshing/vec.hpp"
 #include "tunica/meshing/vertex_normals.hpp"
 #include "tunica/search/octree.hpp"
 

@@ -2,9 +2,9 @@
 // Unit normals at the vertices of a surface, weighted by angle, for each region by itself. [THUERMER98]
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/cap_planes.hpp"
-#include "tunica/meshing/vec.hpp"
 
 #include <array>
 #include <cmath>
