@@ -6,6 +6,7 @@
 #include "artery_scene.hpp"
 #include "run_folder.hpp"
 #include "timed.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/coupling/iqn_ils.hpp"
 #include "tunica/coupling/octree.hpp"
 #include "tunica/coupling/staggered.hpp"
@@ -119,7 +120,7 @@ void run(artery::Options& o) {
     const auto step = fsi.step(o.dt);
     if (!step)
       throw std::runtime_error("step " + std::to_string(n) + " of " + std::to_string(steps) + " at " +
-                               image::number_text((n - 1) * o.dt + step.taken) + " s: the " +
+                               seven_digits((n - 1) * o.dt + step.taken) + " s: the " +
                                std::string(step.failed) + " ended as " + std::string(name(step.status)) +
                                " after " + std::to_string(step.halvings) + " halvings of the step");
     figures.count(step);

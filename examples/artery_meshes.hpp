@@ -9,6 +9,7 @@
 #include "mesh_figures.hpp"
 #include "stages.hpp"
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/fluid/conditions.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/vessel_wall.hpp"
@@ -27,11 +28,6 @@ struct Meshes {
   mesh::HexMesh wall;
 };
 
-/// A number for a sentence: two decimals.
-[[nodiscard]] inline std::string rounded(double x) {
-  return image::number_text(std::round(x * 100) / 100);
-}
-
 /// Figures and warnings of the wall, in the unit of the image; MeshError where a cell is inverted.
 inline void tell_wall(const meshing::WallReport& wall, double edge, examples::Json& report) {
   const auto& extrusion = wall.extrusion;
@@ -41,11 +37,11 @@ inline void tell_wall(const meshing::WallReport& wall, double edge, examples::Js
                     " inverted hexahedra: choose another --edge");
   if (extrusion.thinned > 0)
     warn(report["image_to_mesh"], "the wall gives way at " + std::to_string(extrusion.thinned) +
-                                      " nodes, down to " + rounded(100 * extrusion.least_share) +
+                                      " nodes, down to " + examples::short_text(100 * extrusion.least_share) +
                                       " % of its thickness");
   if (apart.wall_max > 0.1 * edge)
-    warn(report["image_to_mesh"], "lumen and wall are up to " + rounded(apart.wall_max) + " apart, at (" +
-                                      examples::place_text(apart.wall_place) + ")");
+    warn(report["image_to_mesh"], "lumen and wall are up to " + examples::short_text(apart.wall_max) +
+                                      " apart, at " + place(apart.wall_place));
   examples::Json& j = report["wall"];
   j["smallest_scaled_jacobian"] = extrusion.quality.scaled_jacobian.least;
   j["least_share_of_thickness"] = extrusion.least_share;

@@ -7,6 +7,7 @@
 #include "json.hpp"
 #include "mesh_figures.hpp"
 #include "stages.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/image/components.hpp"
 #include "tunica/image/phantom.hpp"
 #include "tunica/image/sampling.hpp"
@@ -157,8 +158,8 @@ namespace detail {
   if (!result.filled.empty())
     warn(report, count_text(result.filled.size(), "cavity", "cavities") +
                      " smaller than the cube of the edge length filled, " + short_text(volume) +
-                     " in all; the largest of " + short_text(largest.volume) + " is at (" +
-                     place_text(largest.centre) + "). --edge 0 keeps them");
+                     " in all; the largest of " + short_text(largest.volume) + " is at " +
+                     place(largest.centre) + ". --edge 0 keeps them");
   return std::move(result.surface);
 }
 
@@ -231,7 +232,7 @@ inline constexpr int image_stages = 7;
   if (made.components.size() > contoured.components.size())
     for (const auto& c : made.components)
       warn(report, "the cuts leave " + std::to_string(made.components.size()) + " parts; one of volume " +
-                       short_text(c.volume) + " is at (" + place_text(c.centre) + ")");
+                       short_text(c.volume) + " is at " + place(c.centre));
   for (std::size_t r = 0; r < s.region_names.size(); ++r)
     if (s.region_names[r].rfind(meshing::border_prefix, 0) == 0)
       warn(report, "the vessel leaves the image: patch " + std::to_string(r) + " is its flat end at " +

@@ -4,6 +4,7 @@
 
 #include "cli.hpp"
 #include "json.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/mesh/topology.hpp"
 #include "tunica/meshing/handles.hpp"
@@ -57,28 +58,20 @@ inline void warn(Json& report, const std::string& sentence) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-/// "221.484, 150.293, 22.501".
-[[nodiscard]] inline std::string place_text(const Vec3& x) {
-  std::array<char, 100> text{};
-  std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g", x[0], x[1], x[2]);
-  return text.data();
-}
-
 /// Warns of handles and of cavities, with their places.
 inline void tell_topology(const mesh::Surface& s, const mesh::Topology& t, Json& report) {
   report["handles"] = Json(std::vector<double>{});
   if (t.genus() > 0)
     for (const auto& h : meshing::handles(s, t)) {
-      warn(report, "the surface has a handle at (" + place_text(h.place) + "), its ring is " +
-                       short_text(h.length) + " long");
+      warn(report, "the surface has a handle at " + place(h.place) + ", its ring is " + short_text(h.length) +
+                       " long");
       Json j;
       j["place"] = h.place, j["length"] = h.length;
       report["handles"].push(std::move(j));
     }
   for (const auto& c : t.components)
     if (c.volume < 0)
-      warn(report,
-           "there is a cavity of volume " + short_text(-c.volume) + " at (" + place_text(c.centre) + ")");
+      warn(report, "there is a cavity of volume " + short_text(-c.volume) + " at " + place(c.centre));
 }
 
 /// Tetrahedra of an edge length that would not be held in memory are refused before any is made.

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
-#include "tunica/image/number_text.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/io/lengths.hpp"
 #include "tunica/io/stl.hpp"
 #include "tunica/mesh/adjacency.hpp"
@@ -28,11 +28,6 @@ struct [[nodiscard]] ClosedSurface {
 
 namespace detail {
 
-[[nodiscard]] inline std::string point_text(const Vec3& x) {
-  const auto text = [](double v) { return image::number_text(std::round(v * 1e4) / 1e4); };
-  return "(" + text(x[0]) + ", " + text(x[1]) + ", " + text(x[2]) + ")";
-}
-
 /// The first edge of that kind, with its ends and the number of facets that share it.
 [[nodiscard]] inline std::string edge_text(const mesh::Surface& s, Index kind) {
   const auto twin = mesh::twins(s.cells, s.node_count());
@@ -44,8 +39,8 @@ namespace detail {
       const auto [p, q] = mesh::half_edge(s.cells, g);
       facets += (p == from && q == to) || (p == to && q == from);
     }
-    return "the edge from " + point_text(s.nodes.col(from)) + " to " + point_text(s.nodes.col(to)) +
-           " is shared by " + std::to_string(facets) + " facets";
+    return "the edge from " + place(s.nodes.col(from)) + " to " + place(s.nodes.col(to)) + " is shared by " +
+           std::to_string(facets) + " facets";
   }
   return "no edge";
 }
@@ -97,7 +92,7 @@ namespace detail {
     std::string holes;
     for (const auto& loop : t.loops)
       holes += (holes.empty() ? "" : ", ") + std::to_string(loop.nodes.size()) + " edges around " +
-               detail::point_text(loop.centre);
+               place(loop.centre);
     throw InputError(name, "the surface is open",
                      std::to_string(t.loops.size()) + " boundary loop" + (t.loops.size() == 1 ? "" : "s") +
                          ": " + holes + "; cap it to make a volume");
