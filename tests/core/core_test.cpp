@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Units, contracts, errors, the solve report and boxes: the small headers of core.
+// Units, contracts, errors, texts of numbers, the solve report and boxes: the small headers of core.
 #include "tunica/core/error.hpp"
 #include "tunica/core/expect.hpp"
 #include "tunica/core/solve_report.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/core/types.hpp"
 #include "tunica/core/units.hpp"
 
@@ -48,6 +49,14 @@ TEST_SUITE("unit") {
     CHECK(std::string(e.what()) == "a.vtk: line 5: SPACING 0");
   }
 
+  TEST_CASE("core: numbers in messages have seven digits in any unit") {
+    CHECK(seven_digits(0.08) == "0.08");
+    CHECK(seven_digits(1.0 / 3) == "0.3333333");
+    CHECK(seven_digits(1e-9) == "1e-09");
+    CHECK(seven_digits(1e300) == "1e+300");
+    CHECK(place({221.484, 0, -1e-6}) == "(221.484, 0, -1e-06)");
+  }
+
   TEST_CASE("core: a solve report is true only when converged") {
     CHECK(SolveReport{.status = Status::converged});
     for (const Status s : {Status::stalled, Status::diverged, Status::max_iterations})
@@ -71,5 +80,8 @@ TEST_SUITE("unit") {
     CHECK(box.centre() == Vec3(0, 1, 3));
     CHECK(box.squared_distance(Vec3(0, 1, 3)) == 0);
     CHECK(box.squared_distance(Vec3(3, 1, 5)) == 8);
+    Box beside;
+    beside.extend(Vec3(1.1, 2, 3));
+    CHECK_FALSE(box.overlaps(beside));
   }
 }

@@ -5,7 +5,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <random>
+#include <vector>
 
 using namespace tunica;
 
@@ -51,21 +53,5 @@ TEST_SUITE("unit") {
     const auto quads = vec::quads({0, 1, 2, 3, 4, 5, 6, 7});
     CHECK(quads.cols() == 2);
     CHECK(quads(1, 1) == 5);
-  }
-
-  TEST_CASE("core: a box knows what it holds") {
-    Box box;
-    CHECK_FALSE(box.overlaps(box));
-    box.extend(Vec3(1, 2, 3)), box.extend(Vec3(2, 4, 3));
-    CHECK(box.centre() == Vec3(1.5, 3, 3));
-    CHECK(box.diagonal() == doctest::Approx(std::sqrt(5.0)));
-    CHECK(box.squared_distance({1.5, 3, 3}) == 0);
-    CHECK(box.squared_distance({0, 5, 5}) == doctest::Approx(1 + 1 + 4));
-    Box touching;
-    touching.extend(Vec3(2, 4, 3));
-    CHECK(box.overlaps(touching));
-    touching = {};
-    touching.extend(Vec3(2.1, 4, 3));
-    CHECK_FALSE(box.overlaps(touching));
   }
 }

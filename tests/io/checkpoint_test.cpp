@@ -2,6 +2,7 @@
 #include "tunica/io/checkpoint.hpp"
 
 #include "tunica/image/sampling.hpp"
+#include "tunica/io/crc32.hpp"
 #include "tunica/io/pvd.hpp"
 
 #include <doctest/doctest.h>

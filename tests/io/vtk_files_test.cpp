@@ -4,6 +4,7 @@
 #include "tunica/io/read_file.hpp"
 #include "tunica/io/stl_write.hpp"
 #include "tunica/io/vtk_image_write.hpp"
+#include "tunica/io/vtk_xml.hpp"
 #include "tunica/io/vtp.hpp"
 #include "tunica/io/vtu.hpp"
 #ifdef TUNICA_WITH_ZLIB

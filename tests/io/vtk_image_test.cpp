@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/io/vtk_image.hpp"
 
+#include "tunica/image/number_text.hpp"
 #include "tunica/image/sampling.hpp"
 #include "tunica/io/vtk_image_write.hpp"
 

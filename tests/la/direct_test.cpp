@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/la/direct.hpp"
+#include "tunica/la/linear_solver.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,6 +9,10 @@
 #include <vector>
 
 using namespace tunica;
+
+static_assert(la::LinearSolver<la::Ldlt> && la::Ldlt::symmetric);
+static_assert(la::LinearSolver<la::Lu> && !la::Lu::symmetric);
+static_assert(!la::LinearSolver<la::SparseMatrix>);
 
 namespace {
 

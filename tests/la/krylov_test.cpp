@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Krylov solvers against a direct solution, with every preconditioner, and how they end in trouble.
+#include "tunica/la/krylov.hpp"
 #include "tunica/la/bicgstab.hpp"
 #include "tunica/la/cg.hpp"
 #include "tunica/la/iterative.hpp"
@@ -140,6 +141,26 @@ TEST_SUITE("unit") {
     CHECK(solver.solve(b, x).iterations == 0);  // x is the start
     A.coeffRef(0, 0) = std::numeric_limits<double>::quiet_NaN();
     CHECK(solver.factorise(A).status == Status::diverged);
+  }
+
+  TEST_CASE("la: a history of residuals ends in its status") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const la::KrylovOptions options{.tolerance = 1e-2, .max_iterations = 9, .stall = 3};
+    const auto ends = [&](const std::vector<double>& residuals) {
+      la::detail::Watch watch(2, options);
+      SolveReport report;
+      int n = 0;
+      for (const double r : residuals)
+        if (watch.done(r, n++, report)) break;
+      return report;
+    };
+    CHECK(ends({2, 0.1, 0.02, 0.01}).status == Status::converged);
+    CHECK(ends({2, 0.1, 0.02, 0.01}).iterations == 2);
+    CHECK(ends({2, 0.1, 0.02}).residual == doctest::Approx(0.01));
+    CHECK(ends({2, nan, 0.01}).status == Status::diverged);
+    CHECK(ends({2, 3e8}).status == Status::diverged);
+    CHECK(ends({2, 1, 1, 0.999, 0.999, 0.01}).status == Status::stalled);
+    CHECK(ends({10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0}).status == Status::max_iterations);
   }
 
   TEST_CASE("la: a krylov solver says how it failed") {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/mesh/adjacency.hpp"
 
-#include "tunica/core/text.hpp"
 #include "tunica/mesh/cell.hpp"
 
 #include <doctest/doctest.h>
@@ -68,13 +67,5 @@ TEST_SUITE("unit") {
     check_tables<mesh::Hex8>(2);
     for (std::size_t f = 0; f < 4; ++f)  // face i of a tetrahedron is opposite to node i
       CHECK(std::count(mesh::Tet4::faces[f].begin(), mesh::Tet4::faces[f].end(), static_cast<int>(f)) == 0);
-  }
-
-  TEST_CASE("core: numbers in messages have seven digits in any unit") {
-    CHECK(seven_digits(0.08) == "0.08");
-    CHECK(seven_digits(1.0 / 3) == "0.3333333");
-    CHECK(seven_digits(1e-9) == "1e-09");
-    CHECK(seven_digits(1e300) == "1e+300");
-    CHECK(place({221.484, 0, -1e-6}) == "(221.484, 0, -1e-06)");
   }
 }

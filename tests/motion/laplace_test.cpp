@@ -3,6 +3,7 @@
 #include "tunica/motion/laplace.hpp"
 #include "tunica/fem/p1_tets.hpp"
 #include "tunica/meshing/tube.hpp"
+#include "tunica/motion/interleaved_cholesky.hpp"
 #include "tunica/motion/levels.hpp"
 
 #include <doctest/doctest.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 using namespace tunica;
 
@@ -42,6 +44,27 @@ double worst_volume_ratio(const mesh::TetMesh& mesh, const Points<3>& d) {
 }  // namespace
 
 TEST_SUITE("unit") {
+  TEST_CASE("motion: the factors give the three components between given nodes") {
+    const int n = 9;  // a chain: -d[i-1] + 2 d[i] - d[i+1] = 0 is linear between its ends
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i < n; ++i) {
+      entries.emplace_back(i, i, 2.0);
+      if (i > 0) entries.emplace_back(i, i - 1, -1.0), entries.emplace_back(i - 1, i, -1.0);
+    }
+    Eigen::SparseMatrix<double> A(n, n);
+    A.setFromTriplets(entries.begin(), entries.end());
+    std::vector<char> known(n, 0);
+    known.front() = known.back() = 1;
+    const motion::InterleavedCholesky factors(A, known);
+    CHECK(factors.unknowns().size() == 7);
+    Points<3> d = Points<3>::Constant(3, n, 99);  // overwritten where it is not given
+    d.col(0) = Vec3(1, 2, 3), d.col(n - 1) = Vec3(5, -2, 3);
+    factors.solve(d);
+    for (int i = 0; i < n; ++i) CHECK((d.col(i) - Vec3(1 + 0.5 * i, 2 - 0.5 * i, 3)).norm() < 1e-14);
+    const Eigen::SparseMatrix<double> indefinite = -A;
+    CHECK_THROWS_AS(motion::InterleavedCholesky(indefinite, known), MeshError);
+  }
+
   TEST_CASE("motion: laplace without stiffening extends a linear displacement exactly") {
     const auto mesh = tube();
     const motion::Laplace laplace(mesh, {.ends = motion::Ends::follow, .stiffening = 0});

@@ -64,9 +64,9 @@ class LegacyFile {
 
   /// Passes over an array, of any type of the format.
   void skip(std::string_view name, std::size_t count) {
-    const std::string lower_or_upper = upper(name);
-    if (lower_or_upper == "STRING" || lower_or_upper == "UTF8_STRING") return skip_strings(count);
-    if (lower_or_upper == "BIT") {
+    const std::string kind = upper(name);
+    if (kind == "STRING" || kind == "UTF8_STRING") return skip_strings(count);
+    if (kind == "BIT") {
       if (binary) return skip_bytes(count / 8 + (count % 8 != 0));
       return skip_words(count);
     }
