@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/meshing/hilbert.hpp"
 #include "tunica/meshing/tet_complex.hpp"
 
@@ -32,8 +33,10 @@ class Delaunay {
     const double r = 8 * (box.diagonal() > 0 ? box.diagonal() : 1.0);
     const Vec3 o = box.centre();
     c_.tet_of.assign(c_.points.size(), -1);
-    const Index a = c_.add_point(o + r * Vec3(-1, -1, -1)), b = c_.add_point(o + r * Vec3(3, -1, -1));
-    const Index c = c_.add_point(o + r * Vec3(-1, 3, -1)), d = c_.add_point(o + r * Vec3(-1, -1, 3));
+    const auto corner = [&](double x, double y, double z) {
+      return c_.add_point(vec::along(o, r, Vec3(x, y, z)));
+    };
+    const Index a = corner(-1, -1, -1), b = corner(3, -1, -1), c = corner(-1, 3, -1), d = corner(-1, -1, 3);
     last_ = c_.add({a, b, c, d});
     const auto order = insertion_order(std::span(c_.points).first(static_cast<std::size_t>(count)), box);
     for (const Index p : order) insert_at(p);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/meshing/delaunay.hpp"
 #include "tunica/meshing/front_edges.hpp"
 #include "tunica/meshing/front_surface.hpp"
@@ -83,11 +84,11 @@ class FrontConform {
   /// About half-way; at a node of the surface on spheres with radii 2^k, so that the edges of a
   /// small angle are cut at equal distances and do not drive each other on.
   [[nodiscard]] Vec3 middle(Index u, Index v) const {
-    if (u >= s_.nodes && v >= s_.nodes) return 0.5 * (c_.point(u) + c_.point(v));
+    if (u >= s_.nodes && v >= s_.nodes) return vec::scaled(0.5, vec::plus(c_.point(u), c_.point(v)));
     if (u >= s_.nodes) return middle(v, u);
-    const Vec3 d = c_.point(v) - c_.point(u);
-    const double length = d.norm(), shell = std::exp2(std::round(std::log2(0.5 * length)));
-    return c_.point(u) + shell / length * d;
+    const Vec3 d = vec::minus(c_.point(v), c_.point(u));
+    const double length = vec::length(d), shell = std::exp2(std::round(std::log2(0.5 * length)));
+    return vec::along(c_.point(u), shell / length, d);
   }
 
   TetComplex& c_;

@@ -3,6 +3,8 @@
 // where these end by Steiner points where it meets a face or an edge, which always succeeds.
 #pragma once
 
+#include "tunica/core/vec.hpp"
+#include "tunica/mesh/triangle.hpp"
 #include "tunica/meshing/cavity_flips.hpp"
 #include "tunica/meshing/cavity_insert.hpp"
 #include "tunica/meshing/front_surface.hpp"
@@ -153,13 +155,15 @@ class FrontEdges {
 
   /// Points beside the segment, off the surface, that make room for flips.
   bool help(Index a, Index b) {
-    const Vec3 along = c_.point(b) - c_.point(a);
-    const Vec3 u = along.unitOrthogonal() * along.norm(), v = along.normalized().cross(u);
+    const Vec3 along = vec::minus(c_.point(b), c_.point(a));
+    const Vec3 u = vec::scaled(vec::length(along), vec::orthogonal(along));
+    const Vec3 v = vec::cross(vec::unit(along), u);
     int left = most_helpers;
     for (const double distance : {0.31, 0.11, 0.033})
       for (const double at_segment : {0.48, 0.27, 0.71})
         for (const auto& [cosine, sine] : sixths) {
-          const Vec3 x = c_.point(a) + at_segment * along + distance * (cosine * u + sine * v);
+          const Vec3 beside = vec::along(vec::scaled(cosine, u), sine, v);
+          const Vec3 x = vec::along(vec::along(c_.point(a), at_segment, along), distance, beside);
           const std::array<Index, 1> seed{containing(c_, x, c_.tet_of[at(a)])};
           if (seed[0] < 0 || insert_.insert(x, seed, 1e-3) < 0) continue;
           deep_left_ = most_deep;
@@ -195,7 +199,8 @@ class FrontEdges {
     if (hit.kind != Hit::at_face || c_.mark(hit.tet, hit.face_index) >= 0) return -1;
     const Triple n = c_.face(hit.tet, hit.face_index);
     const double du = std::abs(c_.orient(n[0], n[1], n[2], u)), db = std::abs(c_.orient(n[0], n[1], n[2], b));
-    const Index p = c_.add_point(c_.point(u) + du / (du + db) * (c_.point(b) - c_.point(u)));
+    const Vec3 segment = vec::minus(c_.point(b), c_.point(u));
+    const Index p = c_.add_point(vec::along(c_.point(u), du / (du + db), segment));
     if (flips_.split_face(hit.tet, hit.face_index, p, flat)) return p;
     drop_last_point();
     return -1;
@@ -210,14 +215,15 @@ class FrontEdges {
     Vec3 w;
     for (std::size_t k = 0; k < 3; ++k)
       w[static_cast<Eigen::Index>((k + 2) % 3)] = std::abs(c_.orient(u, b, n[k], n[(k + 1) % 3]));
-    w /= w.sum();
+    w = vec::divided(w, w[0] + w[1] + w[2]);
     const Side beyond = c_.across(hit.tet, hit.face_index);
     const Vec3 far = c_.point(c_.nodes(beyond / 4)[at(beyond % 4)]), near = c_.point(u);
     for (const double margin : {0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2}) {
-      const Vec3 v = w.cwiseMax(margin) / w.cwiseMax(margin).sum();
-      const Vec3 x = v[0] * c_.point(n[0]) + v[1] * c_.point(n[1]) + v[2] * c_.point(n[2]);
+      const Vec3 held(std::max(w[0], margin), std::max(w[1], margin), std::max(w[2], margin));
+      const Vec3 v = vec::divided(held, held[0] + held[1] + held[2]);
+      const Vec3 x = mesh::Triangle{c_.point(n[0]), c_.point(n[1]), c_.point(n[2])}.at(v);
       for (const double shift : {0.0, margin, -margin}) {  // a flat tetrahedron is left on its open side
-        const Index p = c_.add_point(x + std::abs(shift) * ((shift > 0 ? far : near) - x));
+        const Index p = c_.add_point(vec::along(x, std::abs(shift), vec::minus(shift > 0 ? far : near, x)));
         if (flips_.split_face(hit.tet, hit.face_index, p)) return p;
         drop_last_point();
       }
@@ -240,13 +246,15 @@ class FrontEdges {
   Index split_edge(Index u, Index b, Index t, Index x, Index y) {
     if (s_.locked(x, y)) return -1;
     // The point of (x, y) nearest to the line through u and b.
-    const Vec3 d = c_.point(b) - c_.point(u), e = c_.point(y) - c_.point(x), r = c_.point(x) - c_.point(u);
-    const double dd = d.squaredNorm(), de = d.dot(e), ee = e.squaredNorm(), nn = dd * ee - de * de;
-    const double s = nn > 0 ? (de * d.dot(r) - dd * e.dot(r)) / nn : 0.5;
+    using vec::dot, vec::minus;
+    const Vec3 d = minus(c_.point(b), c_.point(u)), e = minus(c_.point(y), c_.point(x));
+    const Vec3 r = minus(c_.point(x), c_.point(u));
+    const double dd = dot(d, d), de = dot(d, e), ee = dot(e, e), nn = dd * ee - de * de;
+    const double s = nn > 0 ? (de * dot(d, r) - dd * dot(e, r)) / nn : 0.5;
     for (const double margin : {1e-12, 1e-6, 1e-3, 0.1}) {
       const double at_edge = std::clamp(s, margin, 1 - margin);
       if (std::abs(at_edge - s) > 0.01) continue;
-      const Index p = c_.add_point(c_.point(x) + at_edge * e);
+      const Index p = c_.add_point(vec::along(c_.point(x), at_edge, e));
       if (flips_.split_edge(t, x, y, p)) return p;
       drop_last_point();
     }
@@ -257,7 +265,7 @@ class FrontEdges {
   Index insert_between(Index u, Index goal, const Hit& hit) {
     for (const double floor : {1e-3, 1e-6, 1e-10})
       for (const double at_segment : {0.5, 0.3, 0.7, 0.1, 0.9, 0.02, 0.98}) {
-        const Vec3 x = c_.point(u) + at_segment * (c_.point(goal) - c_.point(u));
+        const Vec3 x = vec::along(c_.point(u), at_segment, vec::minus(c_.point(goal), c_.point(u)));
         const std::array<Index, 1> seed{containing(c_, x, hit.tet)};
         if (seed[0] < 0) continue;
         if (const Index p = insert_.insert(x, seed, floor); p >= 0) return p;

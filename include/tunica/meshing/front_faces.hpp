@@ -4,6 +4,7 @@
 // the triangle that splits them where they pierce it.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/meshing/cavity_flips.hpp"
 #include "tunica/meshing/cavity_insert.hpp"
 #include "tunica/meshing/front_edges.hpp"
@@ -167,17 +168,20 @@ class FrontFaces {
     const auto& link = flips_.ring.link;
     const std::size_t m = link.size();
     const Triple& tri = s_.triangles[at(f)];
-    const Vec3 normal = (c_.point(tri[1]) - c_.point(tri[0])).cross(c_.point(tri[2]) - c_.point(tri[0]));
-    const Vec3 left = normal.cross(c_.point(q) - c_.point(p)).normalized();
+    using vec::dot, vec::minus;
+    const Vec3 origin = c_.point(p), corner = c_.point(tri[0]);
+    const Vec3 normal = vec::cross(minus(c_.point(tri[1]), corner), minus(c_.point(tri[2]), corner));
+    const Vec3 up = vec::unit(normal), left = vec::unit(vec::cross(normal, minus(c_.point(q), origin)));
     const auto turn = [&](Index n) {
-      const Vec3 x = c_.point(n) - c_.point(p);
-      return std::atan2(normal.normalized().dot(x), left.dot(x));
+      const Vec3 x = minus(c_.point(n), origin);
+      return std::atan2(dot(up, x), dot(left, x));
     };
     const auto nearest_on = [&](double within) {
       Index nearest = -1;
       for (std::size_t i = 0; i < m; ++i) {
-        const Vec3 x = c_.point(link[i]) - c_.point(p);
-        if (!s_.on(link[i], f) || !(left.dot(x) > 1e-6 * x.norm())) continue;  // none in line with p and q
+        const Vec3 x = minus(c_.point(link[i]), origin);
+        if (!s_.on(link[i], f) || !(dot(left, x) > 1e-6 * vec::length(x)))
+          continue;  // none in line with p and q
         if (std::abs(turn(link[i])) < within) within = std::abs(turn(link[i])), nearest = link[i];
       }
       return nearest;
@@ -193,9 +197,9 @@ class FrontFaces {
       while (gap < m && sign[(i + 1 + gap) % m] == 0) ++gap;
       if (sign[(i + 1 + gap) % m] < 0) continue;
       for (std::size_t k = 0; k < gap; ++k)
-        if (const Index w = link[(i + 1 + k) % m]; left.dot(c_.point(w) - c_.point(p)) > 0) return w;
+        if (const Index w = link[(i + 1 + k) % m]; dot(left, minus(c_.point(w), origin)) > 0) return w;
       const Index u = link[i], v = link[(i + 1) % m];
-      if (gap == 0 && left.dot(meeting(f, u, v, 0) - c_.point(p)) > 0)
+      if (gap == 0 && dot(left, minus(meeting(f, u, v, 0), origin)) > 0)
         return split(f, flips_.ring.tets[i], u, v);
     }
     // Rounded Steiner points have spoilt the signs: the directions decide.
@@ -213,7 +217,7 @@ class FrontFaces {
     const Triple& t = s_.triangles[at(f)];
     const double du = std::abs(c_.orient(t[0], t[1], t[2], u)), dv = std::abs(c_.orient(t[0], t[1], t[2], v));
     const double s = std::clamp(du / (du + dv), margin, 1 - margin);
-    return c_.point(u) + s * (c_.point(v) - c_.point(u));
+    return vec::along(c_.point(u), s, vec::minus(c_.point(v), c_.point(u)));
   }
 
   Index split(Index f, Index tet, Index u, Index v) {

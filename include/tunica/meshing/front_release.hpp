@@ -3,6 +3,7 @@
 // hole that opens is closed by a fan over the triangulation without it: a short move always works.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/meshing/cavity_polygon.hpp"
 #include "tunica/meshing/front_edges.hpp"
 #include "tunica/meshing/front_surface.hpp"
@@ -104,28 +105,29 @@ class FrontRelease {
   /// Moves the point inward, as far as the fans over its loops allow.
   bool move(Index node, const Vec3& origin) {
     std::vector<Vec3> ways;
-    Vec3 inward = Vec3::Zero(), middle = Vec3::Zero();
+    Vec3 inward(0, 0, 0), middle(0, 0, 0);
     double reach = 0;
-    for (const Loop& loop : loops_) inward -= normal(loop.face);
+    for (const Loop& loop : loops_) inward = vec::minus(inward, normal(loop.face));
     int count = 0;
     for (const Index t : star_)
       for (const Index n : c_.nodes(t)) {
         if (n == node) continue;
-        middle += c_.point(n) - origin, ++count;
-        reach = std::max(reach, (c_.point(n) - origin).norm());
+        const Vec3 arm = vec::minus(c_.point(n), origin);
+        middle = vec::plus(middle, arm), ++count;
+        reach = std::max(reach, vec::length(arm));
       }
-    middle /= count;
-    if (inward.norm() > 0) inward *= 0.5 * reach / inward.norm();
-    ways = {middle, Vec3(0.5 * (middle + inward)), inward};
+    middle = vec::divided(middle, count);
+    if (const double size = vec::length(inward); size > 0) inward = vec::scaled(0.5 * reach / size, inward);
+    ways = {middle, vec::scaled(0.5, vec::plus(middle, inward)), inward};
     for (const Index t : star_) {  // towards the tetrahedra themselves, for narrow wedges
-      Vec3 m = Vec3::Zero();
-      for (const Index n : c_.nodes(t)) m += 0.25 * (c_.point(n) - origin);
+      Vec3 m(0, 0, 0);
+      for (const Index n : c_.nodes(t)) m = vec::along(m, 0.25, vec::minus(c_.point(n), origin));
       if (ways.size() < 40) ways.push_back(m);
     }
     double step = 1;
     for (int i = 0; i < halvings; ++i, step *= 0.5) {
       for (const Vec3& way : ways)
-        if (close(node, Vec3(origin + step * way))) return true;
+        if (close(node, vec::along(origin, step, way))) return true;
     }
     c_.points[at(node)] = origin;
     return false;
@@ -133,7 +135,8 @@ class FrontRelease {
 
   [[nodiscard]] Vec3 normal(Index f) const {
     const Triple& t = s_.triangles[at(f)];
-    return (c_.point(t[1]) - c_.point(t[0])).cross(c_.point(t[2]) - c_.point(t[0])).normalized();
+    const Vec3& a = c_.point(t[0]);
+    return vec::unit(vec::cross(vec::minus(c_.point(t[1]), a), vec::minus(c_.point(t[2]), a)));
   }
 
   /// The border faces at the node, chained: one loop for a point on a face, two paths for one on an

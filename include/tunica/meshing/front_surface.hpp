@@ -5,6 +5,7 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/core/types.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/meshing/tet_complex.hpp"
 
 #include <algorithm>
@@ -120,8 +121,8 @@ class FrontSurface {
   }
 
   void refuse_degenerate(std::size_t t, const Points<3>& points) const {
-    const Vec3 a = points.col(triangles[t][0]), b = points.col(triangles[t][1]),
-               c = points.col(triangles[t][2]);
+    const Vec3 a = vec::column(points, triangles[t][0]), b = vec::column(points, triangles[t][1]),
+               c = vec::column(points, triangles[t][2]);
     for (int k = 0; k < 3; ++k) {
       const auto flat = [&](const Vec3& x) { return Point<2>(x[(k + 1) % 3], x[(k + 2) % 3]); };
       if (orient2d(flat(a), flat(b), flat(c)) != 0) return;
@@ -149,7 +150,8 @@ class FrontSurface {
     for (std::size_t i = 0; i < halves.size();) {
       std::size_t end = i;
       while (end < halves.size() && halves[end].a == halves[i].a && halves[end].b == halves[i].b) ++end;
-      const Vec3 middle = 0.5 * (points.col(halves[i].a) + points.col(halves[i].b));
+      const Vec3 middle =
+          vec::scaled(0.5, vec::plus(vec::column(points, halves[i].a), vec::column(points, halves[i].b)));
       if (end - i == 1)
         throw MeshError("the surface is open: an edge has one triangle, at " + place_text(middle));
       if (end - i > 2)
@@ -189,7 +191,7 @@ class FrontSurface {
       } while (t != seed[at(n)] && fan <= count[at(n)]);
       if (fan != count[at(n)])
         throw MeshError("the surface is not manifold: it touches itself at node " + std::to_string(n) +
-                        ", at " + place_text(points.col(n)));
+                        ", at " + place_text(vec::column(points, n)));
     }
   }
 

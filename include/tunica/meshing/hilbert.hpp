@@ -52,7 +52,7 @@ namespace tunica::meshing {
     std::uint64_t round_and_place;
     Index point;
   };
-  const double side = std::max((box.hi - box.lo).maxCoeff(), 1e-300);
+  const double side = std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2], 1e-300});
   std::vector<Key> keys(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::array<std::uint32_t, 3> x{};

@@ -3,6 +3,7 @@
 // tetrahedra between its border and the node better [KLINGNER07]. The inverse: a node is taken out.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/meshing/improve_mesh.hpp"
 #include "tunica/meshing/improve_smooth.hpp"
 
@@ -21,14 +22,15 @@ class ImproveInsert {
   bool insert(Index t) {
     TetComplex& c = m_.c;
     const Quad n = c.nodes(t);
-    Vec3 middle = Vec3::Zero();
-    for (const Index v : n) middle += 0.25 * c.point(v);
+    Vec3 middle(0, 0, 0);
+    for (const Index v : n) middle = vec::along(middle, 0.25, c.point(v));
     std::array<Index, 1> seed{t};
     if (try_at(seed, middle)) return true;
     for (const auto& [i, j] : mesh::Tet4::edges) {
       const Index a = n[at(i)], b = n[at(j)];
       c.ring(t, a, b, ring_);
-      if (ring_.closed && try_at(ring_.tets, 0.5 * (c.point(a) + c.point(b)))) return true;
+      if (ring_.closed && try_at(ring_.tets, vec::scaled(0.5, vec::plus(c.point(a), c.point(b)))))
+        return true;
     }
     return false;
   }
@@ -59,7 +61,7 @@ class ImproveInsert {
     // A place on a face or an edge of the cavity may be poor at first: any valid one will do.
     if (!(value > 0)) return false;
     double scale = 0;
-    for (const Triple& f : place_.faces) scale = std::max(scale, (c.point(f[0]) - x).norm());
+    for (const Triple& f : place_.faces) scale = std::max(scale, vec::distance(c.point(f[0]), x));
     x = place_.climb(c, x, value, 0.15 * scale, 12);
     if (!(value > before * 1.1 + 1e-6)) return false;
     const Index p = c.add_point(x);

@@ -3,6 +3,7 @@
 // with a shrinking step, which gives up a place at its first tetrahedron that is too bad.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/meshing/improve_mesh.hpp"
 
 #include <algorithm>
@@ -40,7 +41,7 @@ class ImprovePlace {
     for (int round = 0; round < rounds; ++round) {
       Vec3 best = x;
       for (const Vec3& d : directions()) {
-        const Vec3 y = x + step * d;
+        const Vec3 y = vec::along(x, step, d);
         const double q = worst(c, y, value);
         if (q > value) value = q, best = y;
       }
@@ -56,7 +57,7 @@ class ImprovePlace {
       std::array<Vec3, 14> d;
       std::size_t n = 0;
       for (int k = 0; k < 3; ++k)
-        for (const double s : {-1.0, 1.0}) d[n] = Vec3::Zero(), d[n++][k] = s;
+        for (const double s : {-1.0, 1.0}) d[n] = Vec3(0, 0, 0), d[n++][k] = s;
       constexpr double r = 0.57735026918962576;
       for (int i = 0; i < 8; ++i) d[n++] = Vec3(i & 1 ? r : -r, i & 2 ? r : -r, i & 4 ? r : -r);
       return d;
@@ -76,16 +77,19 @@ class ImproveSmooth {
     c.star(node, star_);
     const double before = m_.worst(star_);
     place_.faces.clear();
-    Vec3 middle = Vec3::Zero();
+    Vec3 middle(0, 0, 0);
     double length = 0;
     for (const Index t : star_) {
       const int i = c.local(t, node);
       const Triple f = c.face(t, i);
       place_.faces.push_back({f[0], f[2], f[1]});
-      for (const Index n : f) middle += c.point(n), length += (c.point(n) - c.point(node)).norm();
+      for (const Index n : f) {
+        middle = vec::plus(middle, c.point(n));
+        length += vec::distance(c.point(n), c.point(node));
+      }
     }
     const double count = 3 * static_cast<double>(star_.size());
-    middle /= count, length /= count;
+    middle = vec::divided(middle, count), length /= count;
     double value = before;
     Vec3 x = c.point(node);
     if (const double q = place_.worst(c, middle, value); q > value) value = q, x = middle;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/types.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/meshing/size_field.hpp"
 
 #include <algorithm>
@@ -36,19 +37,23 @@ class Lattice {
     // has few bits, so that coordinates are exact.
     const Box& box = surface_.box();
     const double leaf = cell_edge(median_size());
-    unit_ =
-        rounded(leaf / (2 * finest), std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff()));
+    unit_ = rounded(leaf / (2 * finest));
     double extent = 2 * finest * unit_;
     int level = finest_level + 1;
-    while (extent < 1.01 * (box.hi - box.lo).maxCoeff() + 2 * leaf && level < 40) extent *= 2, ++level;
-    origin_ = box.centre() + (leaf * options_.shift.array() - 0.5 * extent).matrix();
-    for (int k = 0; k < 3; ++k) origin_[k] = std::round(origin_[k] / unit_) * unit_;
+    const double widest = std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
+    while (extent < 1.01 * widest + 2 * leaf && level < 40) extent *= 2, ++level;
+    const Vec3 centre = box.centre();
+    for (int k = 0; k < 3; ++k)
+      origin_[k] = std::round((centre[k] + (leaf * options_.shift[k] - 0.5 * extent)) / unit_) * unit_;
     subdivide({0, 0, 0}, std::int64_t{1} << level, false);
-    std::sort(found_.begin(), found_.end());
-    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    std::sort(found_.begin(), found_.end(), [](const Key& a, const Key& b) {
+      return a[0] != b[0] ? a[0] < b[0] : a[1] != b[1] ? a[1] < b[1] : a[2] < b[2];
+    });
     std::vector<Vec3> result;
-    for (const Key& k : found_)
-      if (std::isfinite(k[0])) result.push_back(place(k));
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      const Key &k = found_[i], &last = found_[i > 0 ? i - 1 : 0];
+      if (i == 0 || k[0] != last[0] || k[1] != last[1] || k[2] != last[2]) result.push_back(place(k));
+    }
     return result;
   }
 
@@ -58,17 +63,16 @@ class Lattice {
   static constexpr double finest = 1 << finest_level;
 
   [[nodiscard]] Vec3 place(const Key& k) const {
-    return origin_ +
-           unit_ * Vec3(static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2]));
+    const Vec3 steps(static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2]));
+    return vec::along(origin_, unit_, steps);
   }
   [[nodiscard]] double cell_edge(double h) const { return options_.edge * h / lattice_mean_edge; }
 
-  /// x with so few bits that multiples of it up to `large` are exact.
-  [[nodiscard]] static double rounded(double x, double large) {
+  /// x with so few bits that its multiples are exact.
+  [[nodiscard]] static double rounded(double x) {
     int e = 0;
     std::frexp(x, &e);
     const double step = std::ldexp(1.0, e - 16);
-    static_cast<void>(large);
     return std::max(std::round(x / step) * step, step);
   }
 

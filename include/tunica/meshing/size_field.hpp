@@ -3,10 +3,9 @@
 #pragma once
 
 #include "tunica/core/types.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/triangle.hpp"
 #include "tunica/search/octree.hpp"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +32,7 @@ class SurfaceSize {
     std::vector<Box> boxes;
     for (Eigen::Index t = 0; t < triangles.cols(); ++t)
       boxes.push_back(triangle(static_cast<Index>(t)).box());
-    for (Eigen::Index n = 0; n < points.cols(); ++n) box_.extend(points.col(n));
+    for (Eigen::Index n = 0; n < points.cols(); ++n) box_.extend(node(static_cast<Index>(n)));
     tree_ = search::Octree(boxes);
     find_sizes();
     find_normals();
@@ -46,12 +45,12 @@ class SurfaceSize {
   [[nodiscard]] Near nearest(const Vec3& x) const {
     const auto hit = tree_.nearest(x, [&](Index t) {
       const mesh::Triangle tri = triangle(t);
-      return (tri.at(tri.nearest(x)) - x).squaredNorm();
+      return vec::squared(vec::minus(tri.at(tri.nearest(x)), x));
     });
     const mesh::Triangle tri = triangle(hit.item);
     const Vec3 w = tri.nearest(x), foot = tri.at(w);
     // The normal of the feature that is nearest: face, edge or node; angle-weighted at a node.
-    Vec3 normal = tri.area_vector().normalized();
+    Vec3 normal = vec::unit(tri.area_vector());
     double size = 0;
     int zeros = 0;
     Eigen::Index zero = 0, one = 0;
@@ -60,9 +59,9 @@ class SurfaceSize {
       if (w[i] == 0) ++zeros, zero = i;
       if (w[i] > w[one]) one = i;
     }
-    if (zeros == 2) normal = normal_.col(triangles_(one, hit.item));
+    if (zeros == 2) normal = normal_[at(triangles_(one, hit.item))];
     if (zeros == 1) normal = edge_normal_[at(hit.item)][at(zero)];
-    return {std::sqrt(hit.squared_distance), size, (x - foot).dot(normal) < 0};
+    return {std::sqrt(hit.squared_distance), size, vec::dot(vec::minus(x, foot), normal) < 0};
   }
 
   [[nodiscard]] double operator()(const Vec3& x) const {
@@ -72,7 +71,7 @@ class SurfaceSize {
 
   [[nodiscard]] const Box& box() const { return box_; }
   [[nodiscard]] const std::vector<double>& node_sizes() const { return size_; }
-  [[nodiscard]] Vec3 node(Index n) const { return points_.col(n); }
+  [[nodiscard]] Vec3 node(Index n) const { return vec::column(points_, n); }
 
  private:
   template <class I>
@@ -80,7 +79,7 @@ class SurfaceSize {
     return static_cast<std::size_t>(i);
   }
   [[nodiscard]] mesh::Triangle triangle(Index t) const {
-    return {points_.col(triangles_(0, t)), points_.col(triangles_(1, t)), points_.col(triangles_(2, t))};
+    return {node(triangles_(0, t)), node(triangles_(1, t)), node(triangles_(2, t))};
   }
 
   /// Mean length of the edges at each node, then averaged with the neighbours: slivers do not show.
@@ -91,7 +90,7 @@ class SurfaceSize {
     for (Eigen::Index t = 0; t < triangles_.cols(); ++t)
       for (Eigen::Index i = 0; i < 3; ++i) {
         const Index a = triangles_(i, t), b = triangles_((i + 1) % 3, t);
-        const double l = (points_.col(a) - points_.col(b)).norm();
+        const double l = vec::distance(node(a), node(b));
         sum[at(a)] += l, sum[at(b)] += l, ++weight[at(a)], ++weight[at(b)];
       }
     size_.resize(n);
@@ -109,17 +108,17 @@ class SurfaceSize {
 
   /// Angle-weighted normals of nodes and normals of edges: they tell the side [BAERENTZEN05].
   void find_normals() {
-    normal_ = Points<3>::Zero(3, points_.cols());
+    normal_.assign(at(points_.cols()), Vec3(0, 0, 0));
     std::vector<HalfEdge> halves;
     edge_normal_.resize(at(triangles_.cols()));
     for (Index t = 0; t < static_cast<Index>(triangles_.cols()); ++t) {
       const mesh::Triangle tri = triangle(t);
-      const Vec3 n = tri.area_vector().normalized();
+      const Vec3 n = vec::unit(tri.area_vector());
       const std::array<Vec3, 3> p{tri.a, tri.b, tri.c};
       for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3 u = p[(i + 1) % 3] - p[i], v = p[(i + 2) % 3] - p[i];
-        normal_.col(triangles_(static_cast<Eigen::Index>(i), t)) +=
-            std::atan2(u.cross(v).norm(), u.dot(v)) * n;
+        const Vec3 u = vec::minus(p[(i + 1) % 3], p[i]), v = vec::minus(p[(i + 2) % 3], p[i]);
+        Vec3& sum = normal_[at(triangles_(static_cast<Eigen::Index>(i), t))];
+        sum = vec::along(sum, std::atan2(vec::length(vec::cross(u, v)), vec::dot(u, v)), n);
         const Index a = triangles_(static_cast<Eigen::Index>((i + 1) % 3), t);
         const Index b = triangles_(static_cast<Eigen::Index>((i + 2) % 3), t);
         halves.push_back({std::min(a, b), std::max(a, b), t, i, n});  // opposite to corner i
@@ -130,9 +129,9 @@ class SurfaceSize {
     });
     for (std::size_t i = 0; i < halves.size();) {
       std::size_t end = i;
-      Vec3 sum = Vec3::Zero();
+      Vec3 sum(0, 0, 0);
       for (; end < halves.size() && halves[end].a == halves[i].a && halves[end].b == halves[i].b; ++end)
-        sum += halves[end].normal;
+        sum = vec::plus(sum, halves[end].normal);
       for (; i < end; ++i) edge_normal_[at(halves[i].triangle)][halves[i].corner] = sum;
     }
   }
@@ -149,7 +148,7 @@ class SurfaceSize {
   Box box_;
   search::Octree tree_;
   std::vector<double> size_;
-  Points<3> normal_;
+  std::vector<Vec3> normal_;
   std::vector<std::array<Vec3, 3>> edge_normal_;
 };
 

@@ -273,13 +273,19 @@ class TetComplex {
     return static_cast<std::size_t>(i);
   }
 
+  [[nodiscard]] static bool same(const Triple& a, const Triple& b) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+  }
+
   [[nodiscard]] Slot& find(Triple f) {
-    std::sort(f.begin(), f.end());
+    if (f[0] > f[1]) std::swap(f[0], f[1]);
+    if (f[1] > f[2]) std::swap(f[1], f[2]);
+    if (f[0] > f[1]) std::swap(f[0], f[1]);
     std::uint64_t h = static_cast<std::uint64_t>(f[0]) * 0x9e3779b97f4a7c15u;
     h = (h ^ static_cast<std::uint64_t>(f[1])) * 0xbf58476d1ce4e5b9u;
     h = (h ^ static_cast<std::uint64_t>(f[2]) ^ h >> 29) * 0x94d049bb133111ebu;
     std::size_t i = (h >> 32) & (table_.size() - 1);
-    while (table_[i].used && table_[i].key != f) i = (i + 1) & (table_.size() - 1);
+    while (table_[i].used && !same(table_[i].key, f)) i = (i + 1) & (table_.size() - 1);
     table_[i].key = f;
     return table_[i];
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/triangle.hpp"
 #include "tunica/meshing/front_recovery.hpp"
@@ -12,8 +13,6 @@
 #include "tunica/meshing/size_field.hpp"
 #include "tunica/meshing/tet_complex.hpp"
 #include "tunica/meshing/tet_quality.hpp"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -77,11 +76,12 @@ inline void measure_surface(const FrontSurface& s, const std::vector<Vec3>& node
         if (n != e.a && n != e.b) return p(n);
       return p(e.a);
     };
-    const Vec3 axis = (p(e.b) - p(e.a)).normalized();
-    const Vec3 u = apex(e.triangles[0]) - p(e.a), v = apex(e.triangles[1]) - p(e.a);
-    const Vec3 un = u - u.dot(axis) * axis, vn = v - v.dot(axis) * axis;
+    using vec::dot, vec::minus;
+    const Vec3 axis = vec::unit(minus(p(e.b), p(e.a)));
+    const Vec3 u = minus(apex(e.triangles[0]), p(e.a)), v = minus(apex(e.triangles[1]), p(e.a));
+    const Vec3 un = vec::along(u, -dot(u, axis), axis), vn = vec::along(v, -dot(v, axis), axis);
     // The inside lies below triangle 0, which runs from a to b: turn from u to v against the axis.
-    double angle = std::atan2(vn.cross(un).dot(axis), un.dot(vn));
+    double angle = std::atan2(dot(vec::cross(vn, un), axis), dot(un, vn));
     if (angle < 0) angle += 2 * std::numbers::pi;
     fold = std::min(fold, angle);
   }
@@ -130,13 +130,15 @@ inline void verify(const TetComplex& c, const FrontSurface& s, const FillOptions
     const std::array<Vec3, 4> p{c.point(n[0]), c.point(n[1]), c.point(n[2]), c.point(n[3])};
     part += six_volumes(p[0], p[1], p[2], p[3]);
     const auto angles = dihedral_angles(p[0], p[1], p[2], p[3]);
-    const auto [lo, hi] = std::minmax_element(angles.begin(), angles.end());
-    least = std::min(least, *lo), most = std::max(most, *hi);
-    r.below_target += *lo < target || *hi > std::numbers::pi - target;
+    double lo = angles[0], hi = angles[0];
+    for (const double a : angles) lo = std::min(lo, a), hi = std::max(hi, a);
+    least = std::min(least, lo), most = std::max(most, hi);
+    r.below_target += lo < target || hi > std::numbers::pi - target;
     ratio += mean_ratio(p[0], p[1], p[2], p[3]);
   }
   volume += part;
-  const auto lost = std::count(found.begin(), found.end(), 0);
+  std::size_t lost = 0;
+  for (const char f : found) lost += f == 0;
   if (lost > 0) throw MeshError(std::to_string(lost) + " triangles of the surface are not in the filling");
   const Vec3 o = c.point(s.triangles[0][0]);
   for (const Triple& t : s.triangles) bounded += six_volumes(o, c.point(t[0]), c.point(t[1]), c.point(t[2]));
@@ -157,9 +159,9 @@ inline void verify(const TetComplex& c, const FrontSurface& s, const FillOptions
     number[n] = static_cast<Index>(n) < kept ? static_cast<Index>(n) : c.tet_of[n] >= 0 ? nodes++ : -1;
   for (Index t = 0; t < c.size(); ++t) cells += c.alive(t);
   m.nodes.resize(3, nodes);
-  m.nodes.leftCols(kept) = surface.nodes;
+  for (Index n = 0; n < kept; ++n) vec::set_column(m.nodes, n, vec::column(surface.nodes, n));
   for (std::size_t n = static_cast<std::size_t>(kept); n < number.size(); ++n)
-    if (number[n] >= 0) m.nodes.col(number[n]) = c.points[n];
+    if (number[n] >= 0) vec::set_column(m.nodes, number[n], c.points[n]);
   m.cells.resize(4, cells);
   cells = 0;
   for (Index t = 0; t < c.size(); ++t) {
@@ -176,7 +178,10 @@ inline void verify(const TetComplex& c, const FrontSurface& s, const FillOptions
     patch.faces.resize(3, size[r]);
     Index at = 0;
     for (Index f = 0; f < surface.cell_count(); ++f)
-      if (static_cast<std::size_t>(surface.region_of(f)) == r) patch.faces.col(at++) = surface.cells.col(f);
+      if (static_cast<std::size_t>(surface.region_of(f)) == r) {
+        for (Eigen::Index i = 0; i < 3; ++i) patch.faces(i, at) = surface.cells(i, f);
+        ++at;
+      }
     m.patches.push_back(std::move(patch));
   }
   return m;
@@ -193,7 +198,7 @@ template <SizeField Size>
 FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const FillOptions& options = {}) {
   const FrontSurface front(surface.nodes, surface.cells);
   std::vector<Vec3> nodes;
-  for (Index n = 0; n < surface.node_count(); ++n) nodes.emplace_back(surface.nodes.col(n));
+  for (Index n = 0; n < surface.node_count(); ++n) nodes.push_back(vec::column(surface.nodes, n));
   for (const Index r : surface.region)
     if (r < 0 || static_cast<std::size_t>(r) >= std::max<std::size_t>(1, surface.region_names.size()))
       throw MeshError("a triangle of the surface has region " + std::to_string(r) + ", which has no name");
@@ -204,15 +209,14 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
   constexpr int attempts = 4;  // other inner points and another way each time; no inner points at last
   for (int attempt = 0;; ++attempt) {
     LatticeOptions lattice{.edge = options.lattice_edge, .clearance = options.clearance};
-    lattice.shift = attempt * Vec3(0.37, 0.23, 0.11);
+    lattice.shift = vec::scaled(attempt, Vec3(0.37, 0.23, 0.11));
     std::vector<Vec3> inner;
     if (attempt + 1 < attempts) inner = Lattice(distances, size, lattice).points();
     TetComplex complex;
     try {
-      constexpr std::array ways{FrontRecovery::Way::forward, FrontRecovery::Way::backward,
-                                FrontRecovery::Way::halving, FrontRecovery::Way::halving};
-      const RecoveryCounts counts =
-          FrontRecovery::run(complex, front, nodes, inner, ways[static_cast<std::size_t>(attempt)]);
+      using Way = FrontRecovery::Way;
+      const Way way = attempt == 0 ? Way::forward : attempt == 1 ? Way::backward : Way::halving;
+      const RecoveryCounts counts = FrontRecovery::run(complex, front, nodes, inner, way);
       result.report.missing_edges = counts.missing_edges;
       result.report.missing_faces = counts.missing_faces;
       result.report.steiner = counts.steiner;
