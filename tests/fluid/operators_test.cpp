@@ -8,10 +8,15 @@
 #include "tunica/fluid/domain.hpp"
 #include "tunica/fluid/element.hpp"
 #include "tunica/fluid/field.hpp"
+#include "tunica/fluid/interface_force.hpp"
 #include "tunica/fluid/momentum.hpp"
+#include "tunica/fluid/predictor.hpp"
 #include "tunica/fluid/pressure_operator.hpp"
+#include "tunica/fluid/pressure_step.hpp"
 #include "tunica/fluid/rheology.hpp"
 #include "tunica/fluid/stabilization.hpp"
+#include "tunica/fluid/start.hpp"
+#include "tunica/fluid/state.hpp"
 #include "tunica/la/vector_ops.hpp"
 #include "tunica/meshing/box.hpp"
 
@@ -217,5 +222,90 @@ TEST_SUITE("unit") {
     const Points<3> u = Eigen::Vector3d(1, 2, 3).asDiagonal() * box.mesh.nodes;
     fluid::smooth_convection(box.domain(), stream, u, smooth);
     CHECK((smooth.colwise() - Vec3(1, -4, 1.5)).cwiseAbs().maxCoeff() < 1e-12);
+  }
+
+  TEST_CASE("fluid: a mass balance is relative to the largest flow") {
+    const fluid::MassBalance flow{.inflow = 2, .outflow = 1.5, .discrete = -1e-9, .unbalanced = 0.02};
+    CHECK(flow.residual() == doctest::Approx(5e-10));
+    CHECK(flow.defect() == doctest::Approx(0.01));
+    CHECK(fluid::MassBalance{.swept = -4, .unbalanced = 1}.defect() == doctest::Approx(0.25));
+    CHECK(fluid::MassBalance{}.defect() == 0);
+  }
+
+  TEST_CASE("fluid: the source of the first pressure is the force less the convection") {
+    const Cube box(3);
+    const Index n = box.mesh.node_count();
+    const Points<3> zero = Points<3>::Zero(3, n), none(3, 0), gravity = Vec3(1, -2, 3).replicate(1, n);
+    const Eigen::VectorXd x = box.mesh.nodes.row(0).transpose();
+    const Eigen::VectorXd still = fluid::initial_source(box.domain(), 1000, zero, zero, gravity);
+    CHECK(std::abs(still.sum()) < 1e-13);
+    CHECK(x.dot(still) == doctest::Approx(1));  // int grad x . f
+    Points<3> u = zero;                         // u = (x, -y, 0): u.grad u = (x, y, 0), of mean 1/2
+    u.row(0) = box.mesh.nodes.row(0), u.row(1) = -box.mesh.nodes.row(1);
+    CHECK(x.dot(fluid::initial_source(box.domain(), 4, u, zero, none)) == doctest::Approx(-2));
+  }
+
+  TEST_CASE("fluid: the predictor finds a linear velocity from its boundary") {
+    Cube box(4);
+    for (const auto* side : test::box_sides) box.conditions[side].kind = fluid::Kind::velocity;
+    box.conditions.flag();
+    const Index n = box.mesh.node_count();
+    const Points<3> zero = Points<3>::Zero(3, n), none(3, 0);
+    Eigen::Matrix3d slope;
+    slope << 1, 2, 0, 0, -3, 1, 4, 0, 2;
+    const Points<3> exact = slope * box.mesh.nodes;
+    Points<3> u = exact;
+    test::Noise noise_of(3);
+    for (Index i = 0; i < n; ++i)
+      if (box.conditions.velocity_flags()[std::size_t(i)] == 0)
+        u.col(i) += Vec3(noise_of(), noise_of(), noise_of());
+    const Eigen::VectorXd p = Eigen::VectorXd::Zero(n);
+    fluid::Predictor predictor(box.pattern);
+    const fluid::MomentumFields fields{.a = zero,
+                                       .u = u,
+                                       .history = zero,
+                                       .p = p,
+                                       .force = none,
+                                       .smoothed = predictor.smoothed(),
+                                       .rate = 0};
+    Points<3> found = u;
+    REQUIRE(predictor.solve(box.domain(), fluid::Newtonian{.density = 2, .viscosity = 0.1}, fluid::Fic{},
+                            fields, p, {.tolerance = 1e-12}, found));
+    CHECK((found - exact).cwiseAbs().maxCoeff() < 1e-10);
+  }
+
+  TEST_CASE("fluid: the pressure step finds a linear pressure from its boundary") {
+    Cube box(5);
+    for (const auto* side : test::box_sides) box.conditions[side].kind = fluid::Kind::pressure;
+    box.conditions.flag();
+    fluid::PressureStep<> step(box.pattern, box.mesh.nodes, 1);
+    step.assemble_laplacian(box.domain(), 0.5);
+    const Eigen::VectorXd exact = (Vec3(1, -2, 3).transpose() * box.mesh.nodes).transpose();
+    Eigen::VectorXd x = exact;
+    box.conditions.keep_prescribed(x);
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(x.size());
+    REQUIRE(step.solve(box.domain(), zero, 0, zero, {.tolerance = 1e-12}, x));
+    CHECK((x - exact).cwiseAbs().maxCoeff() < 1e-10);
+  }
+
+  TEST_CASE("fluid: the force of a fluid at rest is its pressure on every node of the wall") {
+    const Cube box(4);
+    const Index n = box.mesh.node_count();
+    const Points<3> zero = Points<3>::Zero(3, n), force = Vec3(0, 3, 0).replicate(1, n);
+    const Eigen::VectorXd p = 3 * box.mesh.nodes.row(1).transpose();  // grad p = f
+    const auto& wall = box.conditions["x1"];
+    const fluid::InterfaceForce on_wall(wall, box.conditions, box.mesh.cells);
+    const Points<3> nodal =
+        on_wall.evaluate(box.domain(), fluid::Newtonian{.density = 2, .viscosity = 0.1}, fluid::Fic{}, p,
+                         {.a = zero, .u = zero, .rate = zero, .p = p, .force = force, .smoothed = zero});
+    Points<3> exact = zero;
+    for (Eigen::Index f = 0; f < wall.faces.cols(); ++f) {
+      const Vec3 area = fluid::Conditions::area_vector(box.mesh.nodes, wall.faces, f);
+      const Vec3 load = fluid::face_load(1, {p[wall.faces(0, f)], p[wall.faces(1, f)], p[wall.faces(2, f)]});
+      for (int i = 0; i < 3; ++i) exact.col(wall.faces(i, f)) += load[i] * area;
+    }
+    for (std::size_t k = 0; k < on_wall.nodes().size(); ++k)
+      CHECK((nodal.col(Eigen::Index(k)) - exact.col(on_wall.nodes()[k])).norm() < 1e-14);
+    CHECK((nodal.rowwise().sum() - Vec3(1.5, 0, 0)).norm() < 1e-13);
   }
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/meshing/marching_cubes.hpp"
+#include "tunica/meshing/contour.hpp"
+#include "tunica/meshing/marching_cubes_table.hpp"
 
 #include "support/work_cases.hpp"
 #include "tunica/mesh/quality.hpp"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The parts that smoothing, cutting and remeshing share: flat regions, sections, caps, edits, volumes.
 #include "tunica/meshing/cap.hpp"
+#include "tunica/meshing/cap_planes.hpp"
+#include "tunica/meshing/cut_snap.hpp"
+#include "tunica/meshing/cut_split.hpp"
 #include "tunica/meshing/edit_flips.hpp"
 #include "tunica/meshing/editable_surface.hpp"
 #include "tunica/meshing/facets.hpp"
@@ -11,6 +14,7 @@
 #include "tunica/meshing/section.hpp"
 #include "tunica/meshing/surface_target.hpp"
 #include "tunica/meshing/triangle_grid.hpp"
+#include "tunica/meshing/wear.hpp"
 
 #include "tunica/mesh/solid_angle.hpp"
 #include "tunica/mesh/topology.hpp"
@@ -140,6 +144,61 @@ TEST_SUITE("unit") {
     CHECK(area == doctest::Approx(16).epsilon(1e-14));
     open.pop_back();
     CHECK_THROWS_AS((void)meshing::caps(s.nodes, open, {0, 0, 4}, normal), MeshError);
+  }
+
+  TEST_CASE("meshing: a cap lies in its plane as far as single precision tells") {
+    auto s = cube(3);
+    s.nodes *= 1.1;
+    const auto planes = meshing::cap_planes(s);
+    REQUIRE(planes.size() == 2);
+    CHECK_FALSE(planes[0]);  // the wall
+    REQUIRE(planes[1]);
+    CHECK(vec::distance(planes[1]->normal, {0, 0, 1}) < 1e-14);
+    CHECK(vec::distance(planes[1]->point, {1.65, 1.65, 3.3}) < 1e-13);
+    s.nodes = s.nodes.cast<float>().cast<double>().eval();
+    CHECK(meshing::cap_planes(s)[1]);
+    for (Index n = 0; n < s.node_count(); ++n)
+      if (s.nodes(2, n) > 3) s.nodes(2, n) += 1e-3 * s.nodes(0, n) * s.nodes(0, n);
+    CHECK_FALSE(meshing::cap_planes(s)[1]);
+  }
+
+  TEST_CASE("meshing: nodes beside a cut are moved onto it and what is kept is closed") {
+    const auto s = cube(4);
+    for (const double height : {2.95, 2.5}) {  // a twentieth above the nodes; between them
+      const meshing::Plane plane{{0, 0, height}, {0, 0, 1}};
+      meshing::detail::Splitter split(s, plane);
+      split.split(std::vector<char>(static_cast<std::size_t>(s.cell_count()), 1), {});
+      CHECK((split.snapped() > 0) == (height == 2.95));
+      split.keep_behind();
+      CHECK(split.pinched().empty());
+      mesh::Surface kept;
+      const Index first_of_cap = split.close(kept);
+      CHECK(mesh::topology(kept).closed());
+      CHECK(mesh::enclosed_volume(kept) == doctest::Approx(16 * height).epsilon(1e-12));
+      double cap = 0;
+      for (Index t = first_of_cap; t < kept.cell_count(); ++t) cap += mesh::triangle(kept, t).area();
+      CHECK(cap == doctest::Approx(16));
+    }
+  }
+
+  TEST_CASE("meshing: wear is the way of the worn places and what they had lost before") {
+    const auto s = cube(3);
+    const auto f = meshing::facets(s, 60);
+    const meshing::EditableSurface edit(s, f, 1.0);
+    const auto node = [&](const Vec3& x) {
+      for (Index n = 0; n < s.node_count(); ++n)
+        if (vec::distance(edit.x(n), x) < 1e-12) return n;
+      return Index{-1};
+    };
+    const Index a = node({1, 1, 3}), b = node({2, 1, 3});
+    meshing::Wear wear;
+    CHECK(wear.at(a) == 0);
+    CHECK(wear.after(edit, a, b, edit.x(a)) < 1e-12);  // within the lid nothing is lost
+    const double raised = wear.after(edit, a, b, {1.5, 1, 3.1});
+    CHECK(raised > 0.01);
+    CHECK(raised <= 0.1);
+    wear.set(b, 0.2);
+    CHECK(wear.after(edit, a, b, edit.x(a)) == doctest::Approx(0.2));
   }
 
   TEST_CASE("meshing: edits keep a surface closed and what would fold or cross it is left out and counted") {
