@@ -3,6 +3,7 @@
 
 #include "coupling/models.hpp"
 #include "tunica/coupling/aitken.hpp"
+#include "tunica/coupling/extrapolation.hpp"
 #include "tunica/coupling/iqn_ils.hpp"
 #include "tunica/coupling/matching.hpp"
 #include "tunica/coupling/relaxed.hpp"

@@ -4,6 +4,7 @@
 
 #include "support/contours.hpp"
 #include "tunica/mesh/measures.hpp"
+#include "tunica/meshing/cell_loops.hpp"
 #include "tunica/meshing/contour_triangles.hpp"
 #include "tunica/meshing/hermite_field.hpp"
 #include "tunica/meshing/hermite_surface.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/solid/mean_dilatation.hpp"
 #include "tunica/core/types.hpp"
+#include "tunica/solid/energy.hpp"
+#include "tunica/solid/isochoric.hpp"
 #include "tunica/solid/laws.hpp"
 
 #include <doctest/doctest.h>

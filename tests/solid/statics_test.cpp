@@ -3,6 +3,7 @@
 #include "tunica/meshing/box.hpp"
 #include "tunica/meshing/tube.hpp"
 #include "tunica/solid/laws.hpp"
+#include "tunica/solid/pressure_load.hpp"
 #include "tunica/solid/stress.hpp"
 
 #include <doctest/doctest.h>
