@@ -4,7 +4,9 @@
 #include "artery_meshes.hpp"
 #include "artery_options.hpp"
 #include "artery_scene.hpp"
+#include "progress.hpp"
 #include "run_folder.hpp"
+#include "stages.hpp"
 #include "timed.hpp"
 #include "tunica/core/text.hpp"
 #include "tunica/coupling/iqn_ils.hpp"
@@ -54,7 +56,7 @@ void run(artery::Options& o) {
   const artery::Meshes mesh = artery::meshes(o, stage, report);
   Stopwatch& watch = stage.watch();
 
-  // --- the scene
+  // The scene.
   const auto set_up = Stopwatch::Clock::now();
   const auto& inlet = mesh.lumen.patches.at(1);
   const auto profile = fluid::inlet_profile(mesh.lumen, inlet.name);
@@ -85,7 +87,7 @@ void run(artery::Options& o) {
                                  TimedMotion{laplace, watch, "mesh motion"}, transfer, coupling::IqnIls{});
   watch.add("set up", std::chrono::duration<double>(Stopwatch::Clock::now() - set_up).count());
 
-  // --- the state of the run, its frames and checkpoints
+  // The state of the run, its frames and checkpoints.
   artery::Figures figures;
   const auto archive = [&](auto& a) {
     blood.archive(a);
@@ -114,7 +116,7 @@ void run(artery::Options& o) {
     watch.time("write", [&] { frame(0); });
   }
 
-  // --- in time
+  // In time.
   Progress progress(steps);
   for (int n = done + 1; n <= steps; ++n) {
     const auto step = fsi.step(o.dt);
@@ -135,7 +137,7 @@ void run(artery::Options& o) {
     progress.tell(n, note);
   }
 
-  // --- figures
+  // Its figures.
   Json& j = report["run"];
   j["tetrahedra"] = mesh.lumen.cell_count(), j["hexahedra"] = mesh.wall.cell_count();
   j["interface_gap_m"] = transfer.gap();

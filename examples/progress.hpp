@@ -5,11 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace tunica::examples {
 
@@ -19,10 +18,11 @@ class Progress {
 
   /// Tells that `done` of the total are done; note says what the last one was like.
   void tell(int done, const std::string& note) {
-    const int percent = 100 * done / total_;
+    const auto part = [&](std::int64_t whole) { return static_cast<int>(whole * done / total_); };
+    const int percent = part(100);
     if (terminal_) {
       constexpr int width = 40;
-      const auto filled = static_cast<std::size_t>(width * done / total_);
+      const auto filled = static_cast<std::size_t>(part(width));
       std::fprintf(stderr, "\r[%s%s] %3d %%  %s\033[K%s", std::string(filled, '#').c_str(),
                    std::string(static_cast<std::size_t>(width) - filled, '.').c_str(), percent, note.c_str(),
                    done >= total_ ? "\n" : "");
@@ -36,38 +36,6 @@ class Progress {
  private:
   int total_, told_ = -1;
   bool terminal_;
-};
-
-/// Wall-clock seconds of the stages of a program, in the order of their first start.
-class Stopwatch {
- public:
-  using Clock = std::chrono::steady_clock;
-
-  /// Adds the time of a call to a stage and hands on what the call returns.
-  template <class F>
-  decltype(auto) time(const std::string& stage, F&& call) {
-    struct Stop {
-      Stopwatch& watch;
-      const std::string& stage;
-      Clock::time_point start = Clock::now();
-      ~Stop() { watch.add(stage, std::chrono::duration<double>(Clock::now() - start).count()); }
-    } stop{*this, stage};
-    return std::forward<F>(call)();
-  }
-
-  void add(const std::string& stage, double seconds) {
-    for (auto& [name, sum] : stages_)
-      if (name == stage) {
-        sum += seconds;
-        return;
-      }
-    stages_.emplace_back(stage, seconds);
-  }
-
-  [[nodiscard]] const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
-
- private:
-  std::vector<std::pair<std::string, double>> stages_;  // [s]
 };
 
 }  // namespace tunica::examples

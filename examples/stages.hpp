@@ -4,6 +4,7 @@
 
 #include "json.hpp"
 #include "progress.hpp"
+#include "stopwatch.hpp"
 
 #include <string>
 #include <utility>

@@ -2,7 +2,7 @@
 // A subsolver of the coupled loop whose steps are timed, for the table at the end of a run.
 #pragma once
 
-#include "progress.hpp"
+#include "stopwatch.hpp"
 #include "tunica/core/solve_report.hpp"
 #include "tunica/core/types.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "tunica/fem/shape.hpp"
 #include "tunica/core/types.hpp"
 #include "tunica/fem/geometry.hpp"
-#include "tunica/fem/shape.hpp"
 
 #include <doctest/doctest.h>
 
