@@ -47,11 +47,11 @@ void report(const std::string& name, double edge, const meshing::WallResult& r) 
                << r.wall.cell_count() << " hexahedra; scaled Jacobian least "
                << e.quality.scaled_jacobian.least << " mean " << e.quality.scaled_jacobian.mean
                << "; thickness gave way at " << e.thinned << " nodes, to " << e.least_share << " at "
-               << e.thinnest.transpose() << "; interfaces apart at most " << d.quads_max / edge << " and "
-               << d.wall_max / edge << " (at " << d.wall_place.transpose() << "), rms " << d.quads_rms / edge
-               << " and " << d.wall_rms / edge << " edges, beyond a tenth " << 100 * d.quads_beyond
-               << " % and " << 100 * d.wall_beyond << " %; grid drawn together " << r.report.refinements
-               << " times at " << r.report.lenses << " places");
+               << e.thinnest.transpose() << ", mean " << e.mean_share << "; interfaces apart at most "
+               << d.quads_max / edge << " and " << d.wall_max / edge << " (at " << d.wall_place.transpose()
+               << "), rms " << d.quads_rms / edge << " and " << d.wall_rms / edge << " edges, beyond a tenth "
+               << 100 * d.quads_beyond << " % and " << 100 * d.wall_beyond << " %; grid drawn together "
+               << r.report.refinements << " times at " << r.report.lenses << " places");
 }
 
 /// Largest distance of a node of the lumen's wall from the bilinear faces, each as 8 x 8 smaller ones.
@@ -78,6 +78,30 @@ double farthest_from(const mesh::QuadSurface& quads, const mesh::Surface& lumen)
   return farthest;
 }
 
+/// Least distance of the outer faces (corners, middles of the sides and of the faces) from the inner ones.
+double thinnest(const meshing::WallResult& result) {
+  const auto sheet = meshing::split_quads(result.inner);
+  const meshing::FootFinder inner(sheet);
+  const auto& faces = result.wall.patch("outer").faces;
+  double least = 1e9;
+  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
+    const auto x = [&](int k) { return Vec3(result.wall.nodes.col(faces(k % 4, f))); };
+    least = std::min(least, inner.distance(0.25 * (x(0) + x(1) + x(2) + x(3))));
+    for (int k = 0; k < 4; ++k)
+      least = std::min({least, inner.distance(x(k)), inner.distance(0.5 * (x(k) + x(k + 1)))});
+  }
+  return least;
+}
+
+/// A weak spot would carry the stress of the whole wall.
+void check_thickness(const meshing::WallResult& result, double thickness) {
+  const double least = thinnest(result) / thickness;
+  MESSAGE("least distance of the outer faces from the inner ones " << least << " of the thickness");
+  CHECK(result.report.extrusion.least_share >= 0.5);
+  CHECK(result.report.extrusion.mean_share >= 0.99);
+  CHECK(least >= 0.5);
+}
+
 }  // namespace
 
 TEST_SUITE("hard") {
@@ -87,6 +111,7 @@ TEST_SUITE("hard") {
       const auto result = meshing::vessel_wall(lumen, {.thickness = 1.5, .edge = edge, .layers = 2});
       report("phantom", edge, result);
       check_wall(lumen, result);
+      check_thickness(result, 1.5);
       CHECK(result.report.extrusion.quality.scaled_jacobian.least >= 0.2);
       CHECK(result.report.within);
       CHECK(result.report.distance.quads_max < 0.1 * edge);
@@ -111,6 +136,7 @@ TEST_SUITE("hard") {
       const auto result = meshing::vessel_wall(even, {.thickness = 1.5, .edge = edge, .layers = 2});
       report("real, remeshed to 2 mm", edge, result);
       check_wall(even, result);
+      check_thickness(result, 1.5);
       CHECK(result.inner.cell_count() == doctest::Approx(3785 / (edge * edge)).epsilon(0.25));
       CHECK(result.report.extrusion.quality.scaled_jacobian.least >= 0.2);
       // The criterion, a tenth of the edge, is not reached: most at the tip of a blind stub at (211.2, 118.9,
@@ -130,6 +156,8 @@ TEST_SUITE("hard") {
     const auto rough = meshing::vessel_wall(lumen, {.thickness = 1.5, .edge = 2});
     report("real, triangles as cut", 2, rough);
     check_wall(lumen, rough);
+    check_thickness(rough, 1.5);
+    CHECK(rough.report.extrusion.quality.scaled_jacobian.least >= 0.2);
   }
 
   TEST_CASE("meshing: wall of the bifurcation has the same bits twice") {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Hex8 layers by extruding a sheet of quadrilaterals outward: the thickness asked for measured normal to
-// the faces, flat ends, no inverted cell. Where the sheet folds too sharply the thickness gives way.
+// the sheet, flat ends, no inverted cell. Where cells would be too flat the thickness gives way.
 #pragma once
 
 #include "tunica/core/error.hpp"
@@ -21,10 +21,10 @@ namespace tunica::meshing {
 
 /// What became of the thickness; lengths in the unit of the nodes.
 struct ExtrudeReport {
-  Index thinned = 0;                   // nodes where it gave way by more than 1 %
-  double least_share = 1;              // least thickness over the thickness asked for
-  Vec3 thinnest = Vec3::Zero();        // inner node of it
-  Vec3 thinned_centre = Vec3::Zero();  // mean of the nodes that gave way
+  Index thinned = 0;                       // nodes where it gave way by more than 1 %
+  double least_share = 1, mean_share = 1;  // thickness over the thickness asked for, at the nodes
+  Vec3 thinnest = Vec3::Zero();            // inner node of it
+  Vec3 thinned_centre = Vec3::Zero();      // mean of the nodes that gave way
   double deviation_rms = 0,
          deviation_max = 0;  // of the faces' thickness, relative, where it did not give way
   mesh::HexQuality quality;
@@ -99,6 +99,7 @@ template <Thickness T = double>
   for (Index n = 0; n < nodes; ++n) {
     const double share = field.share(n);
     result.share.push_back(share);
+    report.mean_share += (share - 1) / nodes;
     if (share < report.least_share) report.least_share = share, report.thinnest = vec::column(sheet.nodes, n);
     if (share < 0.99) ++report.thinned, report.thinned_centre += vec::column(sheet.nodes, n);
   }
