@@ -36,7 +36,7 @@ struct [[nodiscard]] StepReport {
   [[nodiscard]] constexpr explicit operator bool() const { return status == Status::converged; }
 };
 
-/// The coupled problem. A lvalue solver is referred to, a temporary is kept.
+/// The coupled problem. An lvalue solver is referred to, a temporary is kept.
 template <class Fluid, class Structure, class Motion, class Transfers, class Accelerator>
 class Staggered {
  public:

@@ -6,6 +6,8 @@
 #include "tunica/la/cg.hpp"
 #include "tunica/la/preconditioner.hpp"
 
+#include <cstddef>
+
 namespace tunica::fluid {
 
 /// M w = g on the nodes whose velocity is free, w = 0 on the others. Lumping M here, but not in the

@@ -5,6 +5,8 @@
 #include "tunica/fem/p1_tets.hpp"
 #include "tunica/fluid/field.hpp"
 
+#include <cstddef>
+
 namespace tunica::fluid {
 
 using Nodal3 = Eigen::Matrix<double, 3, 4>;  // a vector at the four nodes, one column each

@@ -13,7 +13,9 @@
 #include "tunica/fluid/start.hpp"
 #include "tunica/fluid/state.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>

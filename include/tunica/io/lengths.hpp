@@ -7,6 +7,7 @@
 #include "tunica/core/types.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 

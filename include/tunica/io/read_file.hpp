@@ -5,6 +5,7 @@
 #include "tunica/core/error.hpp"
 
 #include <cerrno>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>

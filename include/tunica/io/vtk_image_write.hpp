@@ -7,10 +7,12 @@
 #include "tunica/io/atomic_file.hpp"
 #include "tunica/io/vtk_types.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string>

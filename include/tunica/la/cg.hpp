@@ -4,6 +4,8 @@
 
 #include "tunica/la/krylov.hpp"
 
+#include <cmath>
+
 namespace tunica::la {
 
 /// Solves A x = b from the start x (n); A, M symmetric, M definite. The residual is the true one:

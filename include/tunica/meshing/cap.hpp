@@ -5,8 +5,11 @@
 #include "tunica/meshing/polygon.hpp"
 #include "tunica/meshing/section.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tunica::meshing {

@@ -5,6 +5,7 @@
 #include "tunica/meshing/flat_regions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>

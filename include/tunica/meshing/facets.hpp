@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 

@@ -13,10 +13,10 @@
 #include "tunica/meshing/wear.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tunica::meshing {

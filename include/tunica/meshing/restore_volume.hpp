@@ -7,6 +7,7 @@
 #include "tunica/meshing/intersections.hpp"
 #include "tunica/meshing/keep_volume.hpp"
 
+#include <cstddef>
 #include <vector>
 
 namespace tunica::meshing {

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <cmath>
+#include <cstddef>
 
 namespace tunica::solid {
 
