@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/core/types.hpp"
 
 #include <algorithm>
@@ -41,8 +42,7 @@ class Matching {
              (taken[static_cast<std::size_t>(*at)] != 0 || (structure.col(*at) - x).norm() > tolerance))
         ++at;
       if (at == by_x.end() || structure(0, *at) > x[0] + tolerance)
-        throw MeshError("the interfaces do not match: no structure node at " + std::to_string(x[0]) + " " +
-                        std::to_string(x[1]) + " " + std::to_string(x[2]));
+        throw MeshError("the interfaces do not match: no structure node at " + place(x));
       structure_of_[static_cast<std::size_t>(f)] = *at;
       taken[static_cast<std::size_t>(*at)] = 1;
     }

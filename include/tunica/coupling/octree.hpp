@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/core/types.hpp"
 #include "tunica/coupling/closest_point.hpp"
 #include "tunica/mesh/patch_nodes.hpp"
@@ -60,8 +61,7 @@ class Octree {
       const auto point = closest_point(Face{}, corners(near.item), x);
       const double gap = std::sqrt(point.squared_distance);
       if (!(gap <= options.largest_gap * diagonal))
-        throw MeshError("transfer: the fluid's wall node at " + std::to_string(x[0]) + " " +
-                        std::to_string(x[1]) + " " + std::to_string(x[2]) + " lies " + std::to_string(gap) +
+        throw MeshError("transfer: the fluid's wall node at " + place(x) + " lies " + seven_digits(gap) +
                         " away from the structure");
       if (gap > gap_) gap_ = gap, farthest_ = x;
       weights_.col(column) = point.weights;

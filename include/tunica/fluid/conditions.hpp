@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/fluid/boundary_function.hpp"
 #include "tunica/fluid/field.hpp"
 #include "tunica/mesh/mesh.hpp"
@@ -60,7 +61,7 @@ class Conditions {
     }
     if (!(area > 0) || !(length(sum) < 1e-8 * area))
       throw MeshError("the patches of the fluid do not close its boundary: their area vectors add up to " +
-                      std::to_string(area > 0 ? length(sum) / area : 1.0) + " of its area");
+                      seven_digits(area > 0 ? length(sum) / area : 1.0) + " of its area");
     flag();
   }
 
