@@ -22,6 +22,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 using namespace tunica;
 
@@ -158,6 +159,23 @@ TEST_SUITE("hard") {
     check_wall(lumen, rough);
     check_thickness(rough, 1.5);
     CHECK(rough.report.extrusion.quality.scaled_jacobian.least >= 0.2);
+  }
+
+  TEST_CASE("meshing: a thin spot or a flat cell outweighs a few far places in the choice of a sheet") {
+    meshing::WallReport sound;
+    sound.extrusion.quality.scaled_jacobian.least = 0.3;
+    auto thin = sound, flat = sound, inverted = sound;
+    thin.extrusion.least_share = 0.35;
+    flat.extrusion.quality.scaled_jacobian.least = 0.1;
+    inverted.extrusion.quality.inverted = 1;
+    const std::vector<meshing::FarPlace> far(20, {Vec3::Zero(), 0.3});
+    const auto badness = [&](const meshing::WallReport& r, bool away) {
+      return meshing::detail::wall_badness(r, away ? far : std::vector<meshing::FarPlace>{}, 0.1);
+    };
+    CHECK(badness(sound, false) == 0);
+    CHECK(badness(sound, true) < badness(thin, false));
+    CHECK(badness(thin, false) < badness(flat, false));
+    CHECK(badness(flat, true) < badness(inverted, false));
   }
 
   TEST_CASE("meshing: wall of the bifurcation has the same bits twice") {

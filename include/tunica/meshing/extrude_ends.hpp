@@ -55,7 +55,6 @@ class ColumnEnds {
 
   /// Distance of the column's end from the sheet over the thickness asked for; 1 where it is all there.
   [[nodiscard]] double share(Index n) const {
-    if (slid_[at(n)] == 0) return 1;
     const double share = share_of(n, offset_[at(n)]);
     return share > 0.995 ? 1 : std::max(share, 0.0);
   }
@@ -176,7 +175,7 @@ class ColumnEnds {
       bool any = false;
       for (Index n = 0; n < c_.sheet.node_count(); ++n) {
         if (!(step[at(n)] >= last_step)) continue;
-        if (bad[at(n)] == 0 && share(n) >= clear) continue;
+        if (bad[at(n)] == 0 && (slid_[at(n)] == 0 || share(n) >= clear)) continue;
         any = true;
         mend(n, step[at(n)]);
       }

@@ -127,15 +127,18 @@ inline bool add_lenses(Lenses& lenses, const std::vector<FarPlace>& far, double 
 }
 
 /// Lower is better: no inverted cell before all; then the sum of what lies beyond the tolerance, to which a
-/// scaled Jacobian of 0.1 below the sound one adds a hundred places that are twice as far off as they may be.
+/// scaled Jacobian of 0.1 below the sound one adds a hundred places that are twice as far off as they may be,
+/// and a share of the thickness of 0.1 below half adds fifty.
 [[nodiscard]] inline double wall_badness(const WallReport& report, const std::vector<FarPlace>& far,
                                          double tolerance) {
   constexpr double sound = 0.2;  // scaled Jacobian
+  constexpr double thick = 0.5;  // share of the thickness
   const auto& quality = report.extrusion.quality;
   double sum = 0;
   for (const FarPlace& place : far) sum += place.distance / tolerance - 1;
   if (quality.inverted > 0) sum += 1e6 * quality.inverted;
   if (!(quality.scaled_jacobian.least >= sound)) sum += 1e3 * (sound - quality.scaled_jacobian.least);
+  if (!(report.extrusion.least_share >= thick)) sum += 500 * (thick - report.extrusion.least_share);
   return sum;
 }
 
