@@ -188,7 +188,9 @@ inline constexpr int image_stages = 7;
     auto made = detail::without_specks(detail::contour(image, region, o, borders), edge, specks, report);
     if (o.surface == Contourer::dual_contouring) {  // its faces lie outside of what is convex, and may cross
       meshing::level(made, image, *o.iso, {.reach = 0.25 * detail::smallest_spacing(image)});
-      (void)meshing::untangle(made);
+      if (const auto tangled = meshing::untangle(made); tangled.crossings_after > 0)
+        warn(report, "the contour still crosses itself: " +
+                         count_text(tangled.crossings_after, "pair", "pairs") + " of triangles");
     }
     return made;
   });
