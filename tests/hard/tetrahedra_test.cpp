@@ -65,8 +65,8 @@ struct Soak {
   Index triangles = 0, tetrahedra = 0;
   std::vector<std::string> refusals;
 
-  /// Valid input: a refusal is a failure of the filler.
-  void valid(const std::string& name, const Surface& s) {
+  /// Valid input: a refusal is a failure of the filler. The smallest dihedral angle [degrees].
+  double valid(const std::string& name, const Surface& s) {
     triangles += s.cell_count();
     try {
       const auto result = meshing::tetrahedra(s);
@@ -78,10 +78,15 @@ struct Soak {
       CHECK_MESSAGE(border(result.mesh) == triangles_of(s), name);
       tetrahedra += r.tetrahedra;
       ++filled;
+      // Below a tenth of a degree the surface itself asks for flat tetrahedra.
+      if (std::min(r.surface_min_angle, r.surface_min_dihedral) > 0.1)
+        CHECK_MESSAGE(r.min_dihedral > 0, name);
+      return r.min_dihedral;
     } catch (const MeshError& e) {
       ++refused;
       refusals.push_back(name + ": " + e.what());
     }
+    return 0;
   }
 };
 
@@ -138,13 +143,13 @@ TEST_SUITE("hard") {
     for (const double f : {0.2, 0.05}) {
       soak.valid("flat sphere", stretched(icosphere(3), Vec3(1, 1, f)));
       soak.valid("needle sphere", stretched(icosphere(3), Vec3(f, f, 1)));
-      soak.valid("flat torus", stretched(torus(16, 48), Vec3(1, 1, f)));
+      CHECK(soak.valid("flat torus", stretched(torus(16, 48), Vec3(1, 1, f))) > 2);
       soak.valid("pressed torus", stretched(torus(16, 48), Vec3(1, f, 1)));
     }
     for (const int around : {3, 5, 12}) {
       soak.valid("tube of few sides", tube_surface(around, 30, 2));
       soak.valid("tube of needles", tube_surface(around * 8, 4, 5, 1, 0.3));
-      soak.valid("thin torus", torus(around, 90, 0.05));
+      CHECK(soak.valid("thin torus", torus(around, 90, 0.05)) > 15);
     }
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       soak.valid("shaken torus", shaken(torus(20, 60), 0.15, seed));
@@ -166,6 +171,14 @@ TEST_SUITE("hard") {
                  meshing::marching_cubes(noise_volume(8, seed), 0.0).surface);
       soak.valid("noise of integers " + std::to_string(seed),
                  meshing::marching_cubes(integer_noise_volume(8, seed), 0.0).surface);
+    }
+    // Bits: the surface has angles of 30 degrees and more, so nothing in it asks for flat tetrahedra.
+    for (const auto& [n, seed] : {std::pair{12, 1}, {12, 3}, {24, 2}}) {
+      const auto bit = [seed = static_cast<std::uint64_t>(seed)](std::uint64_t i) {
+        return static_cast<double>(splitmix64(1 + i + (seed << 32)) % 2);
+      };
+      const auto image = random_volume<float>(n, 0.0F, bit);
+      CHECK(soak.valid("noise of bits", meshing::marching_cubes(image, 0.5).surface) > 17);
     }
     MESSAGE("soak: " << soak.filled << " of " << soak.filled + soak.refused << " surfaces filled, "
                      << soak.triangles << " triangles, " << soak.tetrahedra << " tetrahedra");

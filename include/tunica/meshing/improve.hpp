@@ -109,7 +109,9 @@ class Improve {
       if (smooth_.smooth(v)) ++counts_.moved, moved = true;
     if (number < first_insertion || !is_bad(t)) return moved;
     if (insert_.contract(t)) return ++counts_.contracted, true;
-    if (counts_.inserted < most_inserted_ && hopeful(t) && insert_.insert(t)) return ++counts_.inserted, true;
+    if (counts_.inserted < most_inserted_ && hopeful(t) &&
+        (insert_.insert(t) || (m_.quality(t) < flat && insert_.insert_beside(t))))
+      return ++counts_.inserted, true;
     return moved;
   }
 
@@ -171,6 +173,7 @@ class Improve {
   }
 
   static constexpr int longest_ring = 12;
+  static constexpr double flat = 0.02;  // sine of a dihedral angle
   ImproveMesh m_;
   ImproveSmooth smooth_;
   ImproveInsert insert_;

@@ -22,15 +22,35 @@ class ImproveInsert {
   bool insert(Index t) {
     TetComplex& c = m_.c;
     const Quad n = c.nodes(t);
-    Vec3 middle(0, 0, 0);
-    for (const Index v : n) middle = vec::along(middle, 0.25, c.point(v));
     std::array<Index, 1> seed{t};
-    if (try_at(seed, middle)) return true;
+    if (try_at(seed, centroid(t))) return true;
     for (const auto& [i, j] : mesh::Tet4::edges) {
       const Index a = n[at(i)], b = n[at(j)];
       c.ring(t, a, b, ring_);
       if (ring_.closed && try_at(ring_.tets, vec::scaled(0.5, vec::plus(c.point(a), c.point(b)))))
         return true;
+    }
+    return false;
+  }
+
+  /// As insert, for a nearly flat t whose own places lie in the planes of its faces, where no node sees
+  /// those on the surface: the node goes into a neighbour, or among the tetrahedra around an edge.
+  bool insert_beside(Index t) {
+    TetComplex& c = m_.c;
+    const Quad n = c.nodes(t);
+    for (int f = 0; f < 4; ++f) {
+      const Side s = c.across(t, f);
+      if (s < 0) continue;
+      const std::array<Index, 2> seed{t, s / 4};
+      const Vec3 there = centroid(s / 4);
+      for (const double share : {1.0, 0.3})
+        if (try_at(seed, vec::between(centroid(t), there, share))) return true;
+    }
+    for (const auto& [i, j] : mesh::Tet4::edges) {
+      c.ring(t, n[at(i)], n[at(j)], ring_);
+      Vec3 middle(0, 0, 0);
+      for (const Index r : ring_.tets) middle = vec::plus(middle, centroid(r));
+      if (try_at(ring_.tets, vec::divided(middle, static_cast<double>(ring_.tets.size())))) return true;
     }
     return false;
   }
@@ -49,6 +69,12 @@ class ImproveInsert {
   template <class I>
   [[nodiscard]] static std::size_t at(I i) {
     return static_cast<std::size_t>(i);
+  }
+
+  [[nodiscard]] Vec3 centroid(Index t) const {
+    Vec3 middle(0, 0, 0);
+    for (const Index v : m_.c.nodes(t)) middle = vec::along(middle, 0.25, m_.c.point(v));
+    return middle;
   }
 
   template <class Seed>

@@ -273,10 +273,6 @@ class TetComplex {
     return static_cast<std::size_t>(i);
   }
 
-  [[nodiscard]] static bool same(const Triple& a, const Triple& b) {
-    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-  }
-
   [[nodiscard]] Slot& find(Triple f) {
     if (f[0] > f[1]) std::swap(f[0], f[1]);
     if (f[1] > f[2]) std::swap(f[1], f[2]);
@@ -285,7 +281,7 @@ class TetComplex {
     h = (h ^ static_cast<std::uint64_t>(f[1])) * 0xbf58476d1ce4e5b9u;
     h = (h ^ static_cast<std::uint64_t>(f[2]) ^ h >> 29) * 0x94d049bb133111ebu;
     std::size_t i = (h >> 32) & (table_.size() - 1);
-    while (table_[i].used && !same(table_[i].key, f)) i = (i + 1) & (table_.size() - 1);
+    while (table_[i].used && table_[i].key != f) i = (i + 1) & (table_.size() - 1);
     table_[i].key = f;
     return table_[i];
   }

@@ -204,34 +204,43 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
       throw MeshError("a triangle of the surface has region " + std::to_string(r) + ", which has no name");
   const SurfaceSize distances(surface.nodes, surface.cells, options.growth);
 
-  FillResult result;
-  detail::measure_surface(front, nodes, result.report);
+  FillReport measured;
+  detail::measure_surface(front, nodes, measured);
+  // Flat tetrahedra that the surface does not ask for send the filler on to the next way.
+  constexpr double flat = 0.1;  // [degrees]
+  const double bound = std::min(measured.surface_min_angle, measured.surface_min_dihedral);
+  const double poor = bound > flat ? std::min(flat, 0.5 * bound) : 0;
+  const double target = std::sin(options.target_angle * std::numbers::pi / 180);
+  FillResult best;
   constexpr int attempts = 4;  // other inner points and another way each time; no inner points at last
-  for (int attempt = 0;; ++attempt) {
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    if (best.report.tetrahedra > 0 && (best.report.min_dihedral >= poor || attempt + 1 == attempts)) break;
     LatticeOptions lattice{.edge = options.lattice_edge, .clearance = options.clearance};
     lattice.shift = vec::scaled(attempt, Vec3(0.37, 0.23, 0.11));
     std::vector<Vec3> inner;
     if (attempt + 1 < attempts) inner = Lattice(distances, size, lattice).points();
     TetComplex complex;
+    FillReport report = measured;
     try {
       using Way = FrontRecovery::Way;
       const Way way = attempt == 0 ? Way::forward : attempt == 1 ? Way::backward : Way::halving;
       const RecoveryCounts counts = FrontRecovery::run(complex, front, nodes, inner, way);
-      result.report.missing_edges = counts.missing_edges;
-      result.report.missing_faces = counts.missing_faces;
-      result.report.steiner = counts.steiner;
+      report.missing_edges = counts.missing_edges;
+      report.missing_faces = counts.missing_faces;
+      report.steiner = counts.steiner;
     } catch (const RecoveryFailure& failure) {
       if (attempt + 1 < attempts) continue;
       throw MeshError(std::string("the surface could not be filled: ") + failure.what + ", at " +
                       place_text(failure.place));
     }
-    const double target = std::sin(options.target_angle * std::numbers::pi / 180);
-    result.report.improvement = Improve::run(complex, detail::surface_limits(front, nodes), target);
-    detail::verify(complex, front, options, result.report);
-    result.mesh = detail::to_mesh(complex, surface);
-    result.report.nodes = result.mesh.node_count();
-    return result;
+    report.improvement = Improve::run(complex, detail::surface_limits(front, nodes), target);
+    detail::verify(complex, front, options, report);
+    if (best.report.tetrahedra > 0 && !(report.min_dihedral > best.report.min_dihedral)) continue;
+    best.mesh = detail::to_mesh(complex, surface);
+    report.nodes = best.mesh.node_count();
+    best.report = report;
   }
+  return best;
 }
 
 /// As above, with the size of the surface carried into the inside.
