@@ -119,6 +119,7 @@ class PressureStep {
     // p = p^k + dp - chi mu M_L^-1 (D u* + T (p^k + dp)). The stabilised divergence, not D u* alone: where
     // dp is prescribed the pressure moves until continuity holds in those rows too, and then it rests.
     p += increment + rotational * domain.inverse_mass.cwiseProduct(reaction_ + gamma_ * laplacian_);
+    if (rotational > 0 && domain.conditions.any_pressure()) balance_outlets(domain, force, u, p);
     return report;
   }
 
@@ -222,6 +223,20 @@ class PressureStep {
       const Vec3 rough(r[0] - smooth[0], r[1] - smooth[1], r[2] - smooth[2]);
       for (int i = 0; i < 4; ++i) stabilised_[domain.cells(i, e)] += weight * along(rough, tet.grad, i);
     });
+  }
+
+  /// The rows of continuity of the nodes where the pressure is prescribed were not solved for, and what they
+  /// miss is the mass defect. There too the pressure moves until they hold: p -= omega (D u + T p) / diag(A).
+  /// At most 3 nodes of a cell lie on a patch, so diag(A)^-1 A is at most 3 there, and omega < 2/3 is stable.
+  void balance_outlets(const Domain& domain, const Field& force, const Field& u, Vector& p) {
+    constexpr double omega = 0.5;
+    divergence(domain, u);
+    stabilise(domain, p, force);
+    const Vector diagonal = operator_.preconditioning().diagonal();
+    const auto& prescribed = domain.conditions.pressure_flags();
+    for (Eigen::Index i = 0; i < p.size(); ++i)
+      if (prescribed[static_cast<std::size_t>(i)])
+        p[i] -= omega * (divergence_[i] + stabilised_[i]) / diagonal[i];
   }
 
   /// Without prescribed pressure what flows in must flow out, up to the error of the boundary data.
