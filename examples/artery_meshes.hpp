@@ -35,7 +35,7 @@ inline void tell_wall(const meshing::WallReport& wall, double edge, examples::Js
   if (extrusion.quality.inverted > 0)
     throw MeshError("the wall has " + std::to_string(extrusion.quality.inverted) +
                     " inverted hexahedra: choose another --edge");
-  if (extrusion.thinned > 0)
+  if (extrusion.least_share < 0.9)
     warn(report["image_to_mesh"], "the wall gives way at " + std::to_string(extrusion.thinned) +
                                       " nodes, down to " + examples::short_text(100 * extrusion.least_share) +
                                       " % of its thickness");

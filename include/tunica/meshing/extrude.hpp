@@ -5,10 +5,10 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/core/expect.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/meshing/extrude_field.hpp"
-#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cstddef>

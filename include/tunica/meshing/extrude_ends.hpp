@@ -3,12 +3,12 @@
 // ends are slid along the offset surface until the columns of both flanks stand side by side.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/surface_foot.hpp"
-#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,13 +5,14 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/core/expect.hpp"
+#include "tunica/core/text.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/extrude_ends.hpp"
 #include "tunica/meshing/extrude_options.hpp"
 #include "tunica/meshing/most_normal.hpp"
 #include "tunica/meshing/quad_adjacency.hpp"
-#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -99,8 +100,8 @@ class ExtrudeField {
 
   [[noreturn]] void fail(Index n) const {
     const Vec3 p = node(n);
-    throw MeshError("no direction sees all faces around the node at " + std::to_string(p[0]) + " " +
-                    std::to_string(p[1]) + " " + std::to_string(p[2]) + ": the sheet is folded there");
+    throw MeshError("no direction sees all faces around the node at " + place(p) +
+                    ": the sheet is folded there");
   }
 
   /// Unit normals of the faces at a node, and of their corners there: a cell is positive at its inner corner

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/meshing/front_surface.hpp"
 
 #include <cstddef>
@@ -37,7 +38,7 @@ namespace tunica::meshing {
         }
         (m % 2 == 0 ? votes_in : votes_out) = m / 2;
       }
-    const auto place = [&](Index m) { return place_text(c.point(surface.triangles[at(m)][0])); };
+    const auto place = [&](Index m) { return tunica::place(c.point(surface.triangles[at(m)][0])); };
     if (touches_far && votes_in >= 0)
       throw MeshError("the surface is inward: its normals point into what it encloses, at " +
                       place(votes_in));

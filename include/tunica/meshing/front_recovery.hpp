@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/mesh/triangle.hpp"
 #include "tunica/meshing/delaunay.hpp"
 #include "tunica/meshing/front_conform.hpp"
@@ -127,10 +128,9 @@ class FrontRecovery {
       tree.overlapping(boxes[at(f)], [&](Index other) {
         if (other == f || !cross(s_.triangles[at(f)], s_.triangles[at(other)], position)) return;
         const Triple& t = s_.triangles[at(f)];
-        throw MeshError(
-            "the surface crosses itself: triangles " + std::to_string(std::min(f, other)) + " and " +
-            std::to_string(std::max(f, other)) + ", at " +
-            place_text(mesh::Triangle{c_.point(t[0]), c_.point(t[1]), c_.point(t[2])}.centroid()));
+        throw MeshError("the surface crosses itself: triangles " + std::to_string(std::min(f, other)) +
+                        " and " + std::to_string(std::max(f, other)) + ", at " +
+                        place(mesh::Triangle{c_.point(t[0]), c_.point(t[1]), c_.point(t[2])}.centroid()));
       });
   }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/core/types.hpp"
 #include "tunica/core/vec.hpp"
 #include "tunica/meshing/tet_complex.hpp"
@@ -18,14 +19,6 @@
 #include <vector>
 
 namespace tunica::meshing {
-
-[[nodiscard]] inline std::string place_text(const Vec3& x) {
-  const auto number = [](double v) {
-    std::string s = std::to_string(v);
-    return s;
-  };
-  return "(" + number(x[0]) + ", " + number(x[1]) + ", " + number(x[2]) + ")";
-}
 
 class FrontSurface {
  public:
@@ -127,7 +120,7 @@ class FrontSurface {
       const auto flat = [&](const Vec3& x) { return Point<2>(x[(k + 1) % 3], x[(k + 2) % 3]); };
       if (orient2d(flat(a), flat(b), flat(c)) != 0) return;
     }
-    throw MeshError("triangle " + std::to_string(t) + " of the surface has no area, at " + place_text(a));
+    throw MeshError("triangle " + std::to_string(t) + " of the surface has no area, at " + place(a));
   }
 
   void find_edges(const Points<3>& points) {
@@ -152,14 +145,13 @@ class FrontSurface {
       while (end < halves.size() && halves[end].a == halves[i].a && halves[end].b == halves[i].b) ++end;
       const Vec3 middle =
           vec::scaled(0.5, vec::plus(vec::column(points, halves[i].a), vec::column(points, halves[i].b)));
-      if (end - i == 1)
-        throw MeshError("the surface is open: an edge has one triangle, at " + place_text(middle));
+      if (end - i == 1) throw MeshError("the surface is open: an edge has one triangle, at " + place(middle));
       if (end - i > 2)
         throw MeshError("the surface is not manifold: an edge has " + std::to_string(end - i) +
-                        " triangles, at " + place_text(middle));
+                        " triangles, at " + place(middle));
       if (halves[i].forward == halves[i + 1].forward)
         throw MeshError("the surface is not oriented: two neighbours have opposite senses, at " +
-                        place_text(middle));
+                        place(middle));
       Edge e{halves[i].a, halves[i].b, {}};
       for (std::size_t k = i; k < end; ++k) {
         e.triangles[halves[k].forward ? 0 : 1] = halves[k].triangle;
@@ -191,7 +183,7 @@ class FrontSurface {
       } while (t != seed[at(n)] && fan <= count[at(n)]);
       if (fan != count[at(n)])
         throw MeshError("the surface is not manifold: it touches itself at node " + std::to_string(n) +
-                        ", at " + place_text(vec::column(points, n)));
+                        ", at " + place(vec::column(points, n)));
     }
   }
 

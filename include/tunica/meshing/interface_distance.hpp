@@ -2,10 +2,10 @@
 // How far two meshes of one interface lie apart, measured both ways.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/surface_foot.hpp"
-#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cmath>

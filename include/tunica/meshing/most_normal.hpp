@@ -4,7 +4,7 @@
 #pragma once
 
 #include "tunica/core/types.hpp"
-#include "tunica/meshing/vec.hpp"
+#include "tunica/core/vec.hpp"
 
 #include <algorithm>
 #include <cstddef>

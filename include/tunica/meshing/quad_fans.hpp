@@ -2,9 +2,9 @@
 // A sheet of quadrilaterals as triangles around their middles, and the quadrilateral nearest to a point.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/surface_foot.hpp"
-#include "tunica/meshing/vec.hpp"
 
 #include <array>
 #include <cstddef>

@@ -4,11 +4,11 @@
 // nodes along their normals: convex once linearised, so Gauss-Seidel sweeps cannot diverge.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/quad_fans.hpp"
 #include "tunica/meshing/surface_foot.hpp"
-#include "tunica/meshing/vec.hpp"
 #include "tunica/meshing/wall_quads.hpp"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 
 #include "tunica/core/expect.hpp"
 #include "tunica/core/types.hpp"
-#include "tunica/meshing/vec.hpp"
+#include "tunica/core/vec.hpp"
 
 #include <vector>
 

@@ -3,9 +3,9 @@
 // ridges between its nodes.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/meshing/quad_fans.hpp"
 #include "tunica/meshing/surface_foot.hpp"
-#include "tunica/meshing/vec.hpp"
 #include "tunica/meshing/wall_quads.hpp"
 
 #include <algorithm>

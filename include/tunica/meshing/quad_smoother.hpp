@@ -3,11 +3,11 @@
 // moves that are kept only if they raise the worst corner or the worst distance around a node.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/quad_adjacency.hpp"
 #include "tunica/meshing/rim_curve.hpp"
 #include "tunica/meshing/surface_foot.hpp"
-#include "tunica/meshing/vec.hpp"
 #include "tunica/meshing/wall_quads.hpp"
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/triangle.hpp"
@@ -117,14 +118,13 @@ inline void verify(const TetComplex& c, const FrontSurface& s, const FillOptions
     if (t % block == 0) volume += part, part = 0;
     if (!c.alive(t)) continue;
     const Quad& n = c.nodes(t);
-    if (!(c.orient(n) > 0)) throw MeshError("a tetrahedron is inverted at " + place_text(c.point(n[0])));
+    if (!(c.orient(n) > 0)) throw MeshError("a tetrahedron is inverted at " + place(c.point(n[0])));
     ++r.tetrahedra;
     for (int f = 0; f < 4; ++f) {
       if (c.across(t, f) >= 0) continue;
       const Index m = s.triangle_of(c.face(t, f));
       if (m < 0 || found[static_cast<std::size_t>(m)] != 0)
-        throw MeshError("a face of the border is no triangle of the surface, at " +
-                        place_text(c.point(n[0])));
+        throw MeshError("a face of the border is no triangle of the surface, at " + place(c.point(n[0])));
       found[static_cast<std::size_t>(m)] = 1;
     }
     const std::array<Vec3, 4> p{c.point(n[0]), c.point(n[1]), c.point(n[2]), c.point(n[3])};
@@ -231,7 +231,7 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
     } catch (const RecoveryFailure& failure) {
       if (attempt + 1 < attempts) continue;
       throw MeshError(std::string("the surface could not be filled: ") + failure.what + ", at " +
-                      place_text(failure.place));
+                      place(failure.place));
     }
     report.improvement = Improve::run(complex, detail::surface_limits(front, nodes), target);
     detail::verify(complex, front, options, report);

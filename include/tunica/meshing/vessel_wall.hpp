@@ -5,6 +5,7 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/core/expect.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/dual_contouring.hpp"
 #include "tunica/meshing/extrude.hpp"
@@ -15,7 +16,6 @@
 #include "tunica/meshing/quad_smooth.hpp"
 #include "tunica/meshing/rim_curve.hpp"
 #include "tunica/meshing/surface_foot.hpp"
-#include "tunica/meshing/vec.hpp"
 #include "tunica/meshing/wall_quads.hpp"
 
 #include <algorithm>

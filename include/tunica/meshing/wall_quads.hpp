@@ -4,10 +4,11 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/quad_adjacency.hpp"
 #include "tunica/meshing/rim_curve.hpp"
-#include "tunica/meshing/vec.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -192,8 +193,7 @@ class WallSelection {
                                               rims.regions.begin());
     if (rim == rims.regions.size() || !wall.loops[rim].empty()) {
       const Vec3& x = points[static_cast<std::size_t>(loop.front())];
-      throw MeshError("the contour of the wall is torn at " + std::to_string(x[0]) + " " +
-                      std::to_string(x[1]) + " " + std::to_string(x[2]) +
+      throw MeshError("the contour of the wall is torn at " + place(x) +
                       ": the edge length asked for is too coarse there");
     }
     wall.loops[rim] = std::move(loop);
