@@ -11,7 +11,14 @@ namespace tunica {
 struct InputError : std::runtime_error {
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
   InputError(const std::string& what, const std::string& place, const std::string& found)
-      : std::runtime_error(what + ": " + place + ": " + found) {}
+      : std::runtime_error(joined(what, place, found)) {}
+
+ private:
+  static std::string joined(const std::string& what, const std::string& place, const std::string& found) {
+    std::string text = what;
+    text.append(": ").append(place).append(": ").append(found);
+    return text;
+  }
 };
 
 /// A geometry that cannot be meshed or used, with the place in world coordinates.
