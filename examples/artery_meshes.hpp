@@ -10,13 +10,10 @@
 #include "stages.hpp"
 #include "tunica/core/error.hpp"
 #include "tunica/core/text.hpp"
-#include "tunica/fluid/conditions.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/vessel_wall.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -27,6 +24,11 @@ struct Meshes {
   mesh::TetMesh lumen;
   mesh::HexMesh wall;
 };
+
+/// How far a node of the lumen may lie from the wall that moves it, in mean diagonals of the wall's faces. A
+/// stub of a branch can be too thin for hexahedra round it; its nodes then move with the nearest ones. On an
+/// image of a real aorta, cut at its iliac arteries, such a stub lay one diagonal away.
+inline constexpr double longest_stub = 2;  // [-]
 
 /// Figures and warnings of the wall, in the unit of the image; MeshError where a cell is inverted.
 inline void tell_wall(const meshing::WallReport& wall, double edge, examples::Json& report) {
@@ -46,14 +48,6 @@ inline void tell_wall(const meshing::WallReport& wall, double edge, examples::Js
   j["smallest_scaled_jacobian"] = extrusion.quality.scaled_jacobian.least;
   j["least_share_of_thickness"] = extrusion.least_share;
   j["interfaces_apart"] = std::max(apart.wall_max, apart.quads_max);
-}
-
-/// Radius [m] of the disc with the area of a patch.
-[[nodiscard]] inline double radius(const mesh::TetMesh& lumen, const mesh::Patch<mesh::Tri3>& patch) {
-  double area = 0;
-  for (Eigen::Index f = 0; f < patch.faces.cols(); ++f)
-    area += fluid::Conditions::area_vector(lumen.nodes, patch.faces, f).norm();
-  return std::sqrt(area / std::numbers::pi);
 }
 
 [[nodiscard]] inline Meshes meshes(const Options& o, examples::Stages& stage, examples::Json& report) {

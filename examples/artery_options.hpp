@@ -82,7 +82,7 @@ struct Options {
       "artery_fsi",
       "From an image (VTK legacy; none: a phantom) to blood flow in a deforming vessel, in SI.");
   cli.optional_argument("IMAGE", "the image; lengths of options are in its unit", o.image.image);
-  add_image_options(cli, o.image);
+  add_image_options(cli, o.image, "that of --size");
   cli.choice<double>("--unit", "of the image's lengths (mm)",
                      {{"mm", 1_mm}, {"m", 1_m}, {"cm", 10_mm}, {"um", 1_um}}, o.unit);
   cli.choice<Size>("--size", "coarse: edge 2 mm, one layer of hexahedra; paper: 1.03 mm, two",
@@ -93,7 +93,8 @@ struct Options {
   cli.option("--checkpoint", "N", "steps between checkpoints (5)", o.checkpoint);
   cli.flag("--restart", "go on from the checkpoint in DIR", o.restart);
   cli.option("--threads", "N", "threads (all of the machine); the results do not depend on it", o.threads);
-  cli.option("--report", "FILE.json", "figures and seconds of each stage, as in DIR/report.json", o.report);
+  cli.option("--report", "FILE.json",
+             "figures, and elapsed and CPU seconds of each stage, as in DIR/report.json", o.report);
   return cli;
 }
 

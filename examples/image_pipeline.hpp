@@ -64,7 +64,9 @@ struct [[nodiscard]] ImageMeshes {
   return cut;
 }
 
-inline void add_image_options(Cli& cli, ImageOptions& o) {
+/// edge_default: what holds without --edge, for --help.
+inline void add_image_options(Cli& cli, ImageOptions& o,
+                              const std::string& edge_default = "1.5 times the largest spacing") {
   cli.option("--iso", "V", "iso-value: inside is value >= V", o.iso);
   cli.option("--seed", "i,j,k", "a voxel of the vessel (none: the largest component)",
              [&o](const std::string& text) {
@@ -80,7 +82,7 @@ inline void add_image_options(Cli& cli, ImageOptions& o) {
       {{"marching-cubes", Contourer::marching_cubes}, {"dual-contouring", Contourer::dual_contouring}},
       o.surface);
   cli.choice<Fill>("--fill", "what fills it", {{"tets", Fill::tets}, {"none", Fill::none}}, o.fill);
-  cli.option("--edge", "L", "edge length (none: 1.5 times the largest spacing; 0: the contourer's triangles)",
+  cli.option("--edge", "L", "edge length (none: " + edge_default + "; 0: the contourer's triangles)",
              [&o](const std::string& text) {
                o.edge = number_of<double>(text);
                if (!(*o.edge >= 0 && std::isfinite(*o.edge))) throw UsageError("must be 0 or more");

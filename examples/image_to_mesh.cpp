@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
   cli.argument("IMAGE", "the image", options.image);
   add_image_options(cli, options);
   cli.option("-o", "OUT.vtu", "the tetrahedra; the surface goes to OUT.surface.vtp (the image's name)", out);
-  cli.option("--report", "FILE.json", "figures and seconds of each stage", report_file);
+  cli.option("--report", "FILE.json", "figures, and elapsed and CPU seconds of each stage", report_file);
 
   return run_program(cli, argc, argv, [&] {
     if (options.image.empty()) throw UsageError("IMAGE is empty");

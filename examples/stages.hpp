@@ -23,7 +23,7 @@ class Stages {
   }
   void finish(Json& report) {
     progress_.tell(done_, "done");
-    for (const auto& [name, seconds] : watch_.stages()) report["seconds"][name] = seconds;
+    watch_.report(report);
   }
   [[nodiscard]] Stopwatch& watch() { return watch_; }
 

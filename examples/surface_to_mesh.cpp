@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
              });
   cli.option("-o", "OUT.vtu", "the tetrahedra; their surface goes to OUT.surface.vtp (the surface's name)",
              out);
-  cli.option("--report", "FILE.json", "figures and seconds of each stage", report_file);
+  cli.option("--report", "FILE.json", "figures, and elapsed and CPU seconds of each stage", report_file);
 
   return run_program(cli, argc, argv, [&] {
     const auto volume = mesh_file(out, in);

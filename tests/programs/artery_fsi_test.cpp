@@ -70,6 +70,7 @@ TEST_SUITE("job") {
     CHECK(figure(report, {"run", "worst_dihedral_degrees"}) > 5);
     CHECK(figure(report, {"run", "mass_residual"}) < 1e-8);
     CHECK(figure(report, {"seconds", "flow"}) > 0);
+    CHECK(figure(report, {"cpu_seconds", "flow"}) > 0);
     for (const std::string line : {"cells", "worst quality", "iterations per step", "peak displacement",
                                    "peak wall stress", "peak velocity", "mass defect", "wall dynamics"})
       CHECK(has(done.out, line));
