@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 using namespace tunica;
@@ -60,5 +61,15 @@ TEST_SUITE("unit") {
     REQUIRE(found.size() == 3);
     for (const auto& h : found) CHECK(h.length < 1.0);
     CHECK(meshing::handles(s, t, 2).size() == 2);
+    for (const double unit : {0x1p-20, 0x1p20}) {  // the same to the last bit, whatever the unit
+      auto scaled = s;
+      scaled.nodes *= unit;
+      const auto again = meshing::handles(scaled, mesh::topology(scaled));
+      REQUIRE(again.size() == 3);
+      for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(again[i].length == unit * found[i].length);
+        CHECK(again[i].place == Vec3(unit * found[i].place));
+      }
+    }
   }
 }

@@ -27,7 +27,9 @@ namespace detail {
 /// A surface that is cut open along cycles and closed again by cones, whose edges are too long to be used.
 class HandleSearch {
  public:
-  explicit HandleSearch(const mesh::Surface& s) : surface_(s), cone_from_(s.node_count()) {}
+  explicit HandleSearch(const mesh::Surface& s) : surface_(s), cone_from_(s.node_count()) {
+    for (Index h = 0; h < 3 * s.cell_count(); ++h) detour_ += length(mesh::half_edge(s.cells, h));
+  }
 
   struct Cycle {
     std::vector<Index> nodes;
@@ -104,9 +106,8 @@ class HandleSearch {
   }
 
   [[nodiscard]] double length(mesh::HalfEdge e) const {
-    constexpr double avoided = 1e6;
-    const double l = (surface_.nodes.col(e.to) - surface_.nodes.col(e.from)).norm();
-    return cone(e.from) || cone(e.to) ? avoided * (l + 1) : l;
+    if (cone(e.from) || cone(e.to)) return detour_;
+    return (surface_.nodes.col(e.to) - surface_.nodes.col(e.from)).norm();
   }
 
   /// The shortest of the 2 g cycles of the edges that are in neither tree nor cotree.
@@ -184,6 +185,7 @@ class HandleSearch {
   }
 
   mesh::Surface surface_;
+  double detour_ = 0;  // longer than any path that keeps off the cones, in the unit of the surface
   Index cone_from_;
   std::vector<char> cones_;
   std::vector<Index> twin_;
