@@ -1,19 +1,30 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/meshing/remesh.hpp"
 
+#include "support/folds.hpp"
 #include "support/shared.hpp"
+#include "support/surfaces.hpp"
 #include "support/work_cases.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/image/components.hpp"
 #include "tunica/io/vtk_image.hpp"
 #include "tunica/mesh/topology.hpp"
+#include "tunica/meshing/cavities.hpp"
 #include "tunica/meshing/cut.hpp"
 #include "tunica/meshing/marching_cubes.hpp"
+#include "tunica/meshing/remesh_angles.hpp"
+#include "tunica/meshing/remesh_fit.hpp"
+#include "tunica/meshing/remesh_lengths.hpp"
+#include "tunica/meshing/remesh_relax.hpp"
+#include "tunica/meshing/remesh_state.hpp"
 #include "tunica/meshing/smooth.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace tunica;
@@ -53,6 +64,58 @@ TEST_SUITE("unit") {
       // an equilateral triangle has an area of sqrt(3)/4 edge^2
       CHECK(r.report.triangles == doctest::Approx(mesh::area(s) / (0.433 * edge * edge)).epsilon(0.25));
     }
+  }
+
+  TEST_CASE("meshing: each pass of remeshing does its part and stays on the surface") {
+    const auto sphere = test::icosphere(3);
+    const auto edges = [](const meshing::EditableSurface& s) {
+      return meshing::edges_of(s, [](double) { return true; });
+    };
+    const double mean = std::sqrt(mesh::area(sphere) / sphere.cell_count() / (std::sqrt(3.0) / 4));
+    meshing::detail::RemeshState fine(sphere, 0.5 * mean, 180), coarse(sphere, 2 * mean, 180);
+    for (int pass = 0; pass < 3; ++pass) split_long(fine), collapse_short(coarse);
+    CHECK(edges(fine.edit).back().length <= meshing::detail::long_edge * fine.edge);
+    CHECK(edges(fine.edit).size() > 3 * edges(coarse.edit).size());
+    double before = 0, after = 0;  // of triangles from the sphere of radius 1, in the mean
+    const auto inside = [](const meshing::EditableSurface& s) {
+      double sum = 0, area = 0;
+      for (Index t = 0; t < s.triangle_count(); ++t)
+        if (s.alive(t)) {
+          const auto f = s.triangle(t);
+          for (const Vec3& middle :
+               {vec::between(f.a, f.b, 0.5), vec::between(f.b, f.c, 0.5), vec::between(f.c, f.a, 0.5)})
+            sum += f.area() * (1 - vec::length(middle)) / 3;
+          area += f.area();
+        }
+      return sum / area;
+    };
+    for (int pass = 0; pass < 3; ++pass) relax(coarse);
+    for (Index n = 0; n < coarse.edit.node_count(); ++n) {
+      if (!coarse.edit.used(n)) continue;
+      const double deep = 1 - vec::length(coarse.edit.x(n));  // at most the sagitta of the old triangles
+      CHECK(deep > -1e-12);
+      CHECK(deep < mean * mean / 6 * 1.5);
+      CHECK(vec::distance(coarse.on_target(n, coarse.edit.x(n)), coarse.edit.x(n)) < 1e-12);
+    }
+    before = inside(coarse.edit);
+    for (int pass = 0; pass < 3; ++pass) fit(coarse);
+    after = inside(coarse.edit);
+    const double deviation = inside(fine.edit);  // of the target itself
+    MESSAGE("mean depth of coarse triangles below the sphere ", before, ", fitted ", after,
+            ", of the target ", deviation);
+    CHECK(std::abs(after - deviation) < 0.1 * std::abs(before - deviation));
+
+    // a corner of a triangle is drawn away until its angles are poor, and raised again
+    Index n = 0;
+    while (!fine.edit.used(n)) ++n;
+    const Index m = fine.edit.neighbours(n)[0];
+    REQUIRE(fine.edit.move(n, fine.on_target(n, vec::between(fine.edit.x(n), fine.edit.x(m), 0.7))));
+    const double poor = meshing::detail::worst_about(fine.edit, n);
+    meshing::detail::raise(fine, n);
+    CHECK(meshing::detail::worst_about(fine.edit, n) > 1.5 * poor);
+    repair_angles(fine);
+    for (Index t = 0; t < fine.edit.triangle_count(); ++t)
+      if (fine.edit.alive(t)) CHECK(fine.edit.triangle(t).smallest_angle() > 0.35);
   }
 
   TEST_CASE("meshing: remeshing keeps regions and planes and rims of a cut vessel") {
@@ -99,6 +162,47 @@ TEST_SUITE("unit") {
     CHECK(check(s, r, 0.3, "cube") > 25);
     CHECK(mesh::enclosed_volume(r.surface) == doctest::Approx(8).epsilon(1e-12));
     CHECK(mesh::area(r.surface) == doctest::Approx(24).epsilon(1e-12));
+  }
+
+  TEST_CASE("meshing: remeshing draws no shallow bulge flat against its flat end") {
+    // a mushroom: the lens that a sphere leaves at the border of the image, on a stalk beside its middle
+    for (const double height : {0.08, 0.05}) {
+      const auto body = [&](const Vec3& x) {
+        const double lens = vec::distance(x, {0.5, 0.5, 1.25 - height}) - 0.25;
+        const double stalk = std::max(std::hypot(x[0] - 0.58, x[1] - 0.5) - 0.05, 0.3 - x[2]);
+        return std::min({lens, stalk, vec::distance(x, {0.58, 0.5, 0.3}) - 0.25});
+      };
+      auto s = meshing::marching_cubes(test::sampled<float>(48, [&](const Vec3& x) { return -body(x); }), 0)
+                   .surface;
+      (void)meshing::smooth(s);
+      for (const double edge : {0.1, 0.2, 0.3}) {
+        const auto r = meshing::remesh(s, {.edge = edge});
+        const auto fold = test::sharpest_fold(r.surface);
+        MESSAGE("mushroom of ", height, ", edge ", edge, ": ", r.report.triangles,
+                " triangles, sharpest fold ", fold.degrees, " degrees, before ",
+                test::sharpest_fold(s).degrees);
+        CHECK(mesh::topology(r.surface).closed());
+        CHECK(r.surface.region_names == s.region_names);
+        CHECK(fold.degrees > 5);
+      }
+    }
+  }
+
+  TEST_CASE("meshing: a remeshed aorta with all that touches it has no fold") {
+    const auto path = test::shared("data/aorta_tree.vtk");
+    if (!path) return;
+    const auto image = io::read_vtk_image<short>(*path).image;
+    constexpr double iso = 1299.5, edge = 2.25;
+    auto s = meshing::marching_cubes(image, image::segment(image, {.iso = iso, .seed = {}}).mask.inside, iso)
+                 .surface;
+    const auto before = mesh::topology(s);
+    s = meshing::fill_cavities(std::move(s), before, edge * edge * edge).surface;
+    (void)meshing::smooth(s);
+    const auto r = meshing::remesh(s, {.edge = edge});
+    const auto fold = test::sharpest_fold(r.surface);
+    MESSAGE("aorta tree: sharpest fold ", fold.degrees, " degrees at ", fold.place.transpose());
+    CHECK(check(s, r, edge, "aorta tree") > 5);
+    CHECK(fold.degrees > 5);
   }
 
   TEST_CASE("meshing: a surface that crosses itself is not remeshed") {

@@ -5,9 +5,11 @@
 #include "tunica/meshing/cut_snap.hpp"
 #include "tunica/meshing/cut_split.hpp"
 #include "tunica/meshing/edit_flips.hpp"
+#include "tunica/meshing/edit_kinds.hpp"
 #include "tunica/meshing/editable_surface.hpp"
 #include "tunica/meshing/facets.hpp"
 #include "tunica/meshing/flat_regions.hpp"
+#include "tunica/meshing/folds.hpp"
 #include "tunica/meshing/keep_volume.hpp"
 #include "tunica/meshing/orient.hpp"
 #include "tunica/meshing/restore_volume.hpp"
@@ -169,6 +171,9 @@ TEST_SUITE("unit") {
       meshing::detail::Splitter split(s, plane);
       split.split(std::vector<char>(static_cast<std::size_t>(s.cell_count()), 1), {});
       CHECK((split.snapped() > 0) == (height == 2.95));
+      mesh::Surface none;
+      CHECK_THROWS_AS((void)split.pinched(), ContractError);  // no side is chosen yet
+      CHECK_THROWS_AS((void)split.close(none), ContractError);
       split.keep_behind();
       CHECK(split.pinched().empty());
       mesh::Surface kept;
@@ -179,6 +184,44 @@ TEST_SUITE("unit") {
       for (Index t = first_of_cap; t < kept.cell_count(); ++t) cap += mesh::triangle(kept, t).area();
       CHECK(cap == doctest::Approx(16));
     }
+  }
+
+  TEST_CASE("meshing: a fold is the angle at which triangles meet and no edit sharpens it beyond a limit") {
+    using Patch = std::vector<std::array<Index, 3>>;
+    const Patch hinge{{0, 1, 2}, {1, 0, 3}};
+    for (const double degrees : {180.0, 90.0, 30.0, 0.5}) {
+      const double angle = degrees * std::numbers::pi / 180;
+      const std::array<Vec3, 4> x{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.4, 1, 0),
+                                  Vec3(0.7, 2 * std::cos(angle), 2 * std::sin(angle))};
+      const auto position = [&](Index n) { return x[static_cast<std::size_t>(n)]; };
+      // the other sides of the patch are level with it
+      const auto level = [&](Index a, Index b) { return a + b == 3 ? Patch::value_type{a, b, 2} : hinge[0]; };
+      const Patch one{hinge[0]};
+      const auto other = [&](Index, Index) { return hinge[1]; };
+      CHECK(meshing::sharpest_fold(one, position, other) == doctest::Approx(std::cos(angle)).epsilon(1e-12));
+      CHECK(meshing::sharpest_fold(hinge, position, level) >= std::cos(angle) - 1e-12);
+    }
+    const auto nowhere = [](Index) { return Vec3(1, 2, 3); };
+    CHECK(meshing::sharpest_fold(hinge, nowhere, [&](Index, Index) { return hinge[0]; }) == 1);
+
+    // the top of a low pyramid may be lowered to 5 degrees, not to less
+    mesh::Surface s;
+    s.nodes.resize(3, 5), s.cells.resize(3, 6);
+    s.nodes << 0, 2, 2, 0, 1, 0, 0, 2, 2, 1, 0, 0, 0, 0, 1;
+    s.cells << 0, 1, 2, 3, 0, 0, 1, 2, 3, 0, 2, 3, 4, 4, 4, 4, 1, 2;
+    s.region = {0, 0, 0, 0, 1, 1}, s.region_names = {"wall", "ground"};
+    REQUIRE(mesh::topology(s).closed());
+    meshing::EditableSurface edit(s, meshing::facets(s, 180), 1.0);
+    CHECK(edit.move(4, {1, 1, 0.5}));
+    CHECK(edit.move(4, {1, 1, 0.1}));  // atan(0.1) = 5.7 degrees
+    CHECK_FALSE(edit.move(4, {1, 1, 0.08}));
+    CHECK_FALSE(edit.move(4, {1, 1, 1e-9}));
+    CHECK(edit.x(4) == Vec3(1, 1, 0.1));
+    CHECK(edit.left_out().folds == 2);
+    s.nodes(2, 4) = 0.05;  // what is sharper at first may not get sharper still
+    meshing::EditableSurface low(s, meshing::facets(s, 180), 1.0);
+    CHECK(low.move(4, {1, 1, 0.06}));
+    CHECK_FALSE(low.move(4, {1, 1, 0.05}));
   }
 
   TEST_CASE("meshing: wear is the way of the worn places and what they had lost before") {
@@ -228,7 +271,7 @@ TEST_SUITE("unit") {
     for (Index n = 0; n < s.node_count(); ++n)
       if (vec::distance(edit.x(n), {1, 1, 3}) < 1e-12) inner = n;
     REQUIRE(inner >= 0);
-    CHECK(edit.kind(inner) == meshing::NodeKind::facet);
+    CHECK(meshing::kind_of(edit, inner) == meshing::NodeKind::facet);
     CHECK(edit.move(inner, {1.2, 0.9, 3}));
     CHECK_FALSE(edit.move(inner, {5, 1, 3}));
     CHECK(edit.left_out().folds == 1);

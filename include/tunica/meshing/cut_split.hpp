@@ -90,6 +90,7 @@ class Splitter {
   /// Nodes of the surface that must be kept off the plane: where loops of the section touch, and one end
   /// of each edge that joins two nodes of the rim within what is kept (a cap could use it too). Ascending.
   [[nodiscard]] std::vector<Index> pinched() const {
+    TUNICA_EXPECT(kept_.size() == triangles_.size(), "a side is chosen before the rim is asked for");
     std::vector<int> leaves(x_.size(), 0);
     for (const auto& [e, side] : open_edges()) ++leaves[at(e.from)];
     std::vector<Index> nodes;
@@ -168,6 +169,7 @@ class Splitter {
 
   /// Writes what is kept with its caps; the number of its first cap triangle.
   Index close(mesh::Surface& out) {
+    TUNICA_EXPECT(kept_.size() == triangles_.size(), "a side is chosen before it is closed");
     const auto lid = lids();
     mesh::Surface r;
     std::vector<Index> number(x_.size(), -1);

@@ -4,13 +4,13 @@
 #pragma once
 
 #include "tunica/meshing/facets.hpp"
+#include "tunica/meshing/folds.hpp"
 #include "tunica/meshing/intersections.hpp"
 #include "tunica/meshing/triangle_grid.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -21,9 +21,6 @@ struct LeftOut {
   Index folds = 0;    // a triangle would have turned over or lost its shape
   Index crosses = 0;  // the surface would have crossed itself
 };
-
-/// How a node is bound: inside a facet, on the rim of two, or where more meet.
-enum class NodeKind : std::uint8_t { facet, rim, corner };
 
 class EditableSurface {
  public:
@@ -78,44 +75,17 @@ class EditableSurface {
     return m;
   }
 
-  /// Facets at a node, ascending.
-  [[nodiscard]] std::vector<Index> facets_at(Index n) const {
-    std::vector<Index> f;
-    for (const Index t : ring_[at(n)]) f.push_back(facet(t));
-    std::sort(f.begin(), f.end());
-    f.erase(std::unique(f.begin(), f.end()), f.end());
-    return f;
-  }
-
-  /// Neighbours along rims.
-  [[nodiscard]] std::vector<Index> rim_neighbours(Index n) const {
-    std::vector<Index> r;
-    for (const Index m : neighbours(n))
-      if (on_rim(n, m)) r.push_back(m);
-    return r;
-  }
-
-  [[nodiscard]] NodeKind kind(Index n) const {
-    const Index first = facet(ring_[at(n)].front());
-    bool one = true;
-    for (const Index t : ring_[at(n)]) one = one && facet(t) == first;
-    if (one) return NodeKind::facet;
-    return facets_at(n).size() == 2 && rim_neighbours(n).size() == 2 ? NodeKind::rim : NodeKind::corner;
-  }
-
   /// Moves a node.
   bool move(Index n, const Vec3& to) {
     std::vector<Nodes> made;
     for (const Index t : ring_[at(n)]) made.push_back(nodes(t));
     const std::vector<Index> gone = ring_[at(n)];
     const Vec3 from = x_[at(n)];
-    const auto normals = facet_normals(gone);
+    const Before before{facet_normals(gone), n, from};
     x_[at(n)] = to;
-    if (!allowed(made, gone, normals, most_turn)) {
-      x_[at(n)] = from;
-      return false;
-    }
+    const bool good = allowed(made, gone, before, most_turn);
     x_[at(n)] = from;
+    if (!good) return false;
     for (const Index t : gone) grid_.remove(t);
     x_[at(n)] = to;
     for (const Index t : gone) grid_.add(t, triangle(t).box());
@@ -127,11 +97,11 @@ class EditableSurface {
     const auto [s, t] = sides(a, b);
     const Index c = opposite(s, a, b), d = opposite(t, a, b), n = node_count();
     const std::vector<Index> gone{s, t};
-    const auto normals = facet_normals(gone);
+    const Before before{facet_normals(gone)};
     x_.push_back(place), ring_.emplace_back();
     const std::vector<Nodes> made{{a, n, c}, {n, b, c}, {b, n, d}, {n, a, d}};
     const Index fs = facet(s), ft = facet(t);
-    if (!allowed(made, gone, normals, most_turn)) {
+    if (!allowed(made, gone, before, most_turn)) {
       x_.pop_back(), ring_.pop_back();
       return -1;
     }
@@ -162,9 +132,9 @@ class EditableSurface {
       made.push_back(v), facet_of_made.push_back(facet(f));
     }
     const Vec3 from = x_[at(a)];
-    const auto normals = facet_normals(gone);
+    const Before before{facet_normals(gone), a, from};
     x_[at(a)] = place;
-    const bool good = allowed(made, gone, normals, most_turn, facet_of_made);
+    const bool good = allowed(made, gone, before, most_turn, facet_of_made);
     x_[at(a)] = from;
     if (!good) return false;
     for (const Index f : gone) erase(f);
@@ -181,7 +151,7 @@ class EditableSurface {
       return false;
     const std::vector<Index> gone{s, t};
     const std::vector<Nodes> made{{a, d, c}, {d, b, c}};
-    if (!allowed(made, gone, facet_normals(gone), flip_turn)) return false;
+    if (!allowed(made, gone, {facet_normals(gone)}, flip_turn)) return false;
     erase(s), erase(t);
     insert(made[0], f), insert(made[1], f);
     return true;
@@ -212,10 +182,21 @@ class EditableSurface {
   // a triangle may turn from the mean normal of its facet about the edit by at most 75 degrees (cosine); a
   // flip, whose two triangles are nearly in one plane, by 45
   static constexpr double most_turn = 0.26, flip_turn = 0.7;
+  // two triangles may meet at 5 degrees or more (cosine), or as sharply as those that they replace: no
+  // shallow bulge beside a flat end is drawn flat against it. With 20 degrees bumps of the vessel stay that
+  // should go.
+  static constexpr double sharp = 0.996;
 
   [[nodiscard]] static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   using FacetNormals = std::vector<std::pair<Index, Vec3>>;
+
+  /// The triangles that an edit replaces: the mean normals of their facets, and where a node that moves was.
+  struct Before {
+    FacetNormals normals;
+    Index node = -1;
+    Vec3 place{0, 0, 0};
+  };
 
   [[nodiscard]] FacetNormals facet_normals(const std::vector<Index>& triangles) const {
     FacetNormals normals;
@@ -231,12 +212,12 @@ class EditableSurface {
   /// The triangles `made` may take the place of those `gone`. made_facet: of each; empty: as those gone, in
   /// order (half of them each when there are more).
   [[nodiscard]] bool allowed(const std::vector<Nodes>& made, const std::vector<Index>& gone,
-                             const FacetNormals& normals, double least_cosine,
+                             const Before& before, double least_cosine,
                              const std::vector<Index>& made_facet = {}) {
     for (std::size_t i = 0; i < made.size(); ++i) {
       const Index f = made_facet.empty() ? facet(gone[i * gone.size() / made.size()]) : made_facet[i];
-      const auto n =
-          std::find_if(normals.begin(), normals.end(), [&](const auto& p) { return p.first == f; });
+      const auto n = std::find_if(before.normals.begin(), before.normals.end(),
+                                  [&](const auto& p) { return p.first == f; });
       const Vec3 a = triangle(made[i]).area_vector();
       if (!(a.dot(n->second) > least_cosine * a.norm() * n->second.norm())) {
         ++left_out_.folds;
@@ -244,6 +225,10 @@ class EditableSurface {
       }
     }
     const auto position = [&](Index n) { return x(n); };
+    if (folds_more(made, gone, before)) {
+      ++left_out_.folds;
+      return false;
+    }
     for (const Nodes& v : made)
       if (grid_.any(triangle(v).box(), [&](Index t) {
             return std::find(gone.begin(), gone.end(), t) == gone.end() && cross(v, nodes(t), position);
@@ -252,6 +237,25 @@ class EditableSurface {
         return false;
       }
     return true;
+  }
+
+  [[nodiscard]] bool folds_more(const std::vector<Nodes>& made, const std::vector<Index>& gone,
+                                const Before& before) const {
+    const auto beyond = [&](Index a, Index b) {
+      for (const Index t : ring_[at(a)])
+        for (std::size_t k = 0; k < 3; ++k)
+          if (nodes(t)[k] == a && nodes(t)[(k + 1) % 3] == b &&
+              std::find(gone.begin(), gone.end(), t) == gone.end())
+            return nodes(t);
+      return Nodes{a, b, b};
+    };
+    const double fold = sharpest_fold(
+        made, [&](Index n) { return x(n); }, beyond);
+    if (fold <= sharp) return false;
+    std::vector<Nodes> old;
+    for (const Index t : gone) old.push_back(nodes(t));
+    return fold > sharpest_fold(
+                      old, [&](Index n) { return n == before.node ? before.place : x(n); }, beyond);
   }
 
   void insert(const Nodes& v, Index facet) {
