@@ -4,6 +4,7 @@
 
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/measures.hpp"
+#include "tunica/meshing/flat_regions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,6 @@
 namespace tunica::examples {
 
 struct FlatEndOptions {
-  double tolerance = 1e-6;   // distance from the plane, over the diagonal of the box: single precision passes
   double least_area = 1e-3;  // over the area of the surface
   double rim_cosine = 0.86;  // of the turn at the rim: 30 degrees, along nine tenths of its length
 };
@@ -53,7 +53,9 @@ namespace detail {
 /// all else is "wall". Returns how many there are.
 inline Index name_flat_ends(mesh::Surface& s, const FlatEndOptions& how = {}) {
   const auto twin = mesh::twins(s.cells, s.node_count());
-  const double reach = how.tolerance * mesh::bounding_box(s.nodes).diagonal(), all = mesh::area(s);
+  // half of what a flat region may be off its mean plane: here it is held against one triangle's
+  const double reach = 0.5 * meshing::flat_tolerance * mesh::bounding_box(s.nodes).diagonal();
+  const double all = mesh::area(s);
   std::vector<Index> order(static_cast<std::size_t>(s.cell_count()));
   std::iota(order.begin(), order.end(), Index{0});
   const auto size = [&](Index t) { return mesh::triangle(s, t).area(); };

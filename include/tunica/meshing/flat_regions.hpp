@@ -23,12 +23,14 @@ struct Plane {
   [[nodiscard]] Vec3 projected(const Vec3& x) const { return vec::along(x, -distance(x), normal); }
 };
 
-/// A region is flat when its nodes lie within this part of the bounding box's diagonal of one plane.
-inline constexpr double flat_tolerance = 1e-9;
+/// A region is flat when its nodes lie within this part of the bounding box's diagonal of one plane:
+/// coordinates of single precision will do.
+inline constexpr double flat_tolerance = 1e-6;
 
 /// The plane of each region of the surface, outward normal; none where it is curved or empty.
 [[nodiscard]] inline std::vector<std::optional<Plane>> flat_regions(const mesh::Surface& s) {
-  const auto regions = std::max<std::size_t>(1, s.region_names.size());
+  std::size_t regions = std::max<std::size_t>(1, s.region_names.size());
+  for (const Index r : s.region) regions = std::max(regions, static_cast<std::size_t>(r) + 1);
   std::vector<Vec3> normal(regions, Vec3(0, 0, 0)), centre(regions, Vec3(0, 0, 0));
   std::vector<double> area(regions, 0.0), off(regions, 0.0);
   for (Index t = 0; t < s.cell_count(); ++t) {
@@ -38,18 +40,18 @@ inline constexpr double flat_tolerance = 1e-9;
     area[r] += f.area();
     centre[r] = vec::along(centre[r], f.area(), f.centroid());
   }
-  for (std::size_t r = 0; r < regions; ++r)
-    if (area[r] > 0) centre[r] = vec::divided(centre[r], area[r]), normal[r] = vec::unit(normal[r]);
-  for (Index t = 0; t < s.cell_count(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const auto r = static_cast<std::size_t>(s.region_of(t));
-      off[r] = std::max(off[r],
-                        std::abs(vec::dot(normal[r], vec::minus(mesh::node(s, s.cells(k, t)), centre[r]))));
-    }
-  const double tolerance = s.node_count() > 0 ? flat_tolerance * mesh::bounding_box(s.nodes).diagonal() : 0;
   std::vector<std::optional<Plane>> planes(regions);
   for (std::size_t r = 0; r < regions; ++r)
-    if (area[r] > 0 && off[r] <= tolerance) planes[r] = Plane{centre[r], normal[r]};
+    if (vec::length(normal[r]) > 0.5 * area[r])  // else it is closed or folded, and its normal is noise
+      planes[r] = Plane{vec::divided(centre[r], area[r]), vec::unit(normal[r])};
+  for (Index t = 0; t < s.cell_count(); ++t) {
+    const auto r = static_cast<std::size_t>(s.region_of(t));
+    for (int k = 0; planes[r] && k < 3; ++k)
+      off[r] = std::max(off[r], std::abs(planes[r]->distance(mesh::node(s, s.cells(k, t)))));
+  }
+  const double reach = s.node_count() > 0 ? flat_tolerance * mesh::bounding_box(s.nodes).diagonal() : 0;
+  for (std::size_t r = 0; r < regions; ++r)
+    if (off[r] > reach) planes[r].reset();
   return planes;
 }
 

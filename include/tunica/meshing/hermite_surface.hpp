@@ -6,7 +6,7 @@
 #include "tunica/core/error.hpp"
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
-#include "tunica/meshing/cap_planes.hpp"
+#include "tunica/meshing/flat_regions.hpp"
 #include "tunica/meshing/hermite.hpp"
 #include "tunica/meshing/vertex_normals.hpp"
 
@@ -135,7 +135,7 @@ struct LineHit {
   if (surface.cell_count() == 0) throw MeshError("an empty surface has no contour");
   Box box;
   for (Index n = 0; n < surface.node_count(); ++n) box.extend(vec::column(surface.nodes, n));
-  const auto flat = cap_planes(surface);
+  const auto flat = flat_regions(surface);
   std::vector<std::vector<Vec3>> normals(flat.size());  // of the curved regions
   for (std::size_t r = 0; r < flat.size(); ++r)
     if (!flat[r]) normals[r] = vertex_normals(surface, static_cast<Index>(r));

@@ -6,7 +6,7 @@
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
-#include "tunica/meshing/cap_planes.hpp"
+#include "tunica/meshing/flat_regions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,17 +21,16 @@ namespace tunica::meshing {
 /// A closed polygon in the plane of a cap, run with the wall on its left.
 class RimCurve {
  public:
-  RimCurve(std::string name, const CapPlane& plane, const std::vector<Vec3>& points)
+  RimCurve(std::string name, const Plane& plane, const std::vector<Vec3>& points)
       : name_(std::move(name)), plane_(plane) {
     length_.push_back(0);
-    for (const Vec3& x : points)
-      points_.push_back(vec::along(x, -vec::dot(plane.normal, vec::minus(x, plane.point)), plane.normal));
+    for (const Vec3& x : points) points_.push_back(plane.projected(x));
     for (std::size_t i = 0; i < points.size(); ++i)
       length_.push_back(length_.back() + vec::distance(points_[(i + 1) % points.size()], points_[i]));
   }
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] const CapPlane& plane() const { return plane_; }
+  [[nodiscard]] const Plane& plane() const { return plane_; }
   [[nodiscard]] double length() const { return length_.back(); }
 
   /// Where on the curve the point nearest to x is [length], in [0, length()).
@@ -68,7 +67,7 @@ class RimCurve {
   }
 
   std::string name_;
-  CapPlane plane_;
+  Plane plane_;
   std::vector<Vec3> points_;
   std::vector<double> length_;  // up to each point, and of the whole
 };
@@ -114,7 +113,7 @@ struct RimEdges {
 }  // namespace detail
 
 [[nodiscard]] inline Rims rims_of(const mesh::Surface& surface) {
-  const auto flat = cap_planes(surface);
+  const auto flat = flat_regions(surface);
   const detail::RimEdges edges = detail::rim_edges(surface, flat.size());
   Rims rims;
   for (std::size_t r = 1; r < flat.size(); ++r) {
