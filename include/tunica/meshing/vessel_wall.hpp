@@ -5,14 +5,14 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/core/expect.hpp"
-#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
-#include "tunica/meshing/dual_contouring.hpp"
 #include "tunica/meshing/extrude.hpp"
-#include "tunica/meshing/hermite_surface.hpp"
 #include "tunica/meshing/interface_distance.hpp"
+#include "tunica/meshing/quad_contour.hpp"
 #include "tunica/meshing/quad_fit.hpp"
+#include "tunica/meshing/quad_grow.hpp"
 #include "tunica/meshing/quad_lens.hpp"
+#include "tunica/meshing/quad_settle.hpp"
 #include "tunica/meshing/quad_smooth.hpp"
 #include "tunica/meshing/rim_curve.hpp"
 #include "tunica/meshing/surface_foot.hpp"
@@ -44,6 +44,7 @@ struct WallReport {
   InterfaceDistance distance;  // of the quadrilaterals and the lumen's wall, with the places of the largest
   bool within = false;         // the tolerance, everywhere
   int refinements = 0;         // rounds in which the grid was drawn together
+  Index grown = 0;             // quadrilaterals by which blind branches were grown
   std::size_t lenses = 0;      // places where it was
   QuadSmoothReport smoothing;
   ExtrudeReport extrusion;
@@ -59,72 +60,6 @@ struct [[nodiscard]] WallResult {
 };
 
 namespace detail {
-
-/// The wall's quadrilaterals on a grid of that spacing as the lenses draw it together.
-[[nodiscard]] inline WallQuads quads_through(const Lenses& lenses, const mesh::Surface& lumen, double spacing,
-                                             const Rims& rims) {
-  if (lenses.empty())
-    return wall_quads(dual_contour(hermite_of_surface(lumen, {.spacing = spacing}), {.hold = -0.5}), rims);
-  mesh::Surface magnified = lumen;
-  for (Index n = 0; n < lumen.node_count(); ++n)
-    vec::set_column(magnified.nodes, n, lenses.magnified(vec::column(lumen.nodes, n)));
-  mesh::QuadSurface contour =
-      dual_contour(hermite_of_surface(magnified, {.spacing = spacing}), {.hold = -0.5});
-  for (Index n = 0; n < contour.node_count(); ++n)
-    vec::set_column(contour.nodes, n, lenses.restored(vec::column(contour.nodes, n)));
-  return wall_quads(contour, rims);
-}
-
-/// A lens for each group of places that lie within an edge of each other; false if there is none to add.
-inline bool add_lenses(Lenses& lenses, const std::vector<FarPlace>& far, double edge, double tolerance,
-                       double most) {
-  std::vector<char> used(far.size(), 0);
-  std::vector<Lens> added;
-  for (std::size_t i = 0; i < far.size(); ++i) {
-    if (used[i] != 0) continue;
-    std::vector<std::size_t> group{i};
-    used[i] = 1;
-    for (std::size_t g = 0; g < group.size(); ++g)
-      for (std::size_t j = 0; j < far.size(); ++j)
-        if (used[j] == 0 && vec::distance(far[group[g]].place, far[j].place) < edge)
-          used[j] = 1, group.push_back(j);
-    Vec3 sum = Vec3::Zero();
-    double weight = 0, radius = edge, worst = 0;
-    for (const std::size_t g : group) {
-      const double w = far[g].distance - 0.9 * tolerance;
-      sum = vec::along(sum, w, far[g].place), weight += w;
-      worst = std::max(worst, far[g].distance);
-    }
-    const Vec3 centre = vec::scaled(1 / weight, sum);
-    for (const std::size_t g : group) radius = std::max(radius, vec::distance(far[g].place, centre));
-    // distances go with the square of the spacing
-    const double power = std::clamp(std::sqrt(worst / tolerance) - 0.8, 0.25, 1.0);
-    added.push_back({centre, std::min(radius, 3 * edge), power});
-  }
-  bool any = false;
-  for (Lens& lens : added) {
-    lens.power = std::min(lens.power, most / lenses.magnification(lens.centre) - 1);
-    if (!(lens.power > 0.1)) continue;
-    lenses.add(lens);
-    any = true;
-  }
-  return any;
-}
-
-/// Smooths the quadrilaterals of the contour and lays them level with the lumen.
-[[nodiscard]] inline mesh::QuadSurface fitted_sheet(WallQuads& quads, const FootFinder& finder,
-                                                    const Rims& rims, const std::vector<Vec3>& targets,
-                                                    const QuadSmoothOptions& smooth, double tolerance,
-                                                    WallReport& report) {
-  report.dropped = quads.dropped;
-  report.smoothing = smooth_quads(quads, finder, rims, smooth, targets);
-  fit_quads(quads, finder, targets, {.tolerance = 0.85 * tolerance});
-  mesh::QuadSurface sheet;
-  sheet.nodes = quads.nodes;
-  sheet.cells = quads.cells;
-  sheet.region_names = {"wall"};
-  return sheet;
-}
 
 /// Lower is better: no inverted cell before all; then the sum of what lies beyond the tolerance, to which a
 /// scaled Jacobian of 0.1 below the sound one adds a hundred places that are twice as far off as they may be,
@@ -142,60 +77,137 @@ inline bool add_lenses(Lenses& lenses, const std::vector<FarPlace>& far, double 
   return sum;
 }
 
+/// Higher is better, among walls that are equally bad.
+[[nodiscard]] inline double wall_worth(const WallReport& report) {
+  return std::min(report.extrusion.quality.scaled_jacobian.least, 0.3) + 0.3 * report.extrusion.least_share;
+}
+
+/// Extrudes sheets of one lumen, measures the walls and keeps the best.
+template <Thickness T>
+class WallTrials {
+ public:
+  WallTrials(const mesh::Surface& lumen, const WallOptions<T>& options)
+      : options_(options), rims_(rims_of(lumen)), finder_(lumen), targets_(wall_points(lumen)) {}
+
+  [[nodiscard]] double tolerance() const { return options_.tolerance * options_.edge; }
+  [[nodiscard]] const Rims& rims() const { return rims_; }
+  [[nodiscard]] WallReport& report() { return report_; }                   // of the sheets to come
+  [[nodiscard]] const std::vector<FarPlace>& far() const { return far_; }  // of the last sheet
+  [[nodiscard]] bool sound() const { return sound_; }                      // the last: no cell is inverted
+  [[nodiscard]] bool any() const { return best_.has_value(); }
+  [[nodiscard]] double least() const { return least_; }  // badness so far
+  [[nodiscard]] WallResult best() && { return std::move(*best_); }
+
+  /// Smooths the quadrilaterals of a contour and lays them level with the lumen.
+  void fit(WallQuads& quads, const QuadSmoothOptions& smooth) {
+    report_.dropped = quads.dropped;
+    report_.smoothing = smooth_quads(quads, finder_, rims_, smooth, targets_);
+    fit_quads(quads, finder_, targets_, {.tolerance = 0.85 * tolerance()});
+  }
+
+  /// The badness of the wall on a sheet; MeshError where the sheet folds.
+  double judge(const WallQuads& quads) {
+    WallResult result;
+    result.inner.nodes = quads.nodes;
+    result.inner.cells = quads.cells;
+    result.inner.region_names = {"wall"};
+    result.report = report_;
+    far_.clear();
+    sound_ = false;
+    result.report.distance = interface_distance(result.inner, targets_, finder_, tolerance(), &far_);
+    result.report.within = far_.empty();
+    std::vector<SheetRim> ends;
+    for (std::size_t r = 0; r < rims_.curves.size(); ++r)
+      ends.push_back({rims_.curves[r].name(), rims_.curves[r].plane().normal, quads.loops[r]});
+    Extruded extruded =
+        extrude(result.inner, std::span<const SheetRim>(ends),
+                ExtrudeOptions<T>{.thickness = options_.thickness, .layers = options_.layers});
+    result.wall = std::move(extruded.mesh);
+    result.report.extrusion = std::move(extruded.report);
+    sound_ = result.report.extrusion.quality.inverted == 0;
+    const double badness = wall_badness(result.report, far_, tolerance());
+    const double worth = wall_worth(result.report);
+    if (badness < least_ || (badness == least_ && worth > most_))
+      least_ = badness, most_ = worth, best_ = std::move(result);
+    return badness;
+  }
+
+  /// Settles the nodes where the sheet lies too far from the lumen, then grows the branches that it misses
+  /// if that is asked for.
+  void settle(WallQuads& quads, bool grow) {
+    const QuadSettleOptions all{.tolerance = 0.9 * tolerance()};
+    const auto before = quads.cells.cols();
+    const auto value = [&](const WallQuads& sheet) {
+      report_.grown = static_cast<Index>(sheet.cells.cols() - before);
+      try {
+        return judge(sheet);
+      } catch (const MeshError&) {
+        return std::numeric_limits<double>::infinity();
+      }
+    };
+    settle_quads(quads, finder_, rims_, targets_, all);
+    if (!(value(quads) > 0) || !grow) return;
+    const int rings =
+        grow_quads(quads, finder_, rims_, targets_, {.edge = options_.edge, .tolerance = tolerance()}, value);
+    if (rings == 0) return;
+    settle_quads(quads, finder_, rims_, targets_, all);
+    (void)value(quads);
+    report_.grown = 0;
+  }
+
+ private:
+  const WallOptions<T> options_;
+  const Rims rims_;
+  const FootFinder finder_;
+  const std::vector<Vec3> targets_;
+  WallReport report_;
+  std::vector<FarPlace> far_;
+  bool sound_ = false;
+  double least_ = std::numeric_limits<double>::infinity(), most_ = 0;  // badness and worth of the best
+  std::optional<WallResult> best_;
+};
+
 }  // namespace detail
 
 /// lumen: closed, region 0 the wall, the others flat caps. Inner faces follow the wall on the average, and
 /// within the tolerance where they can; those of the ends lie exactly on the rims, in the planes of the caps.
-/// Where the sheet is farther from the lumen the grid is drawn together, and the best of the sheets is kept:
-/// one without inverted cells before all. Where the sheet folds it is smoothed again with nodes that may go
+/// Where the sheet is farther from the lumen its nodes are settled one by one, the grid is drawn together,
+/// and then blind branches that are missed are grown from the sheet. The best of the sheets is kept: one
+/// without inverted cells before all. Where the sheet folds it is smoothed again with nodes that may go
 /// farther from their places. MeshError where the edge length is too coarse for the vessel, or where the
 /// sheet folds however it is smoothed.
 template <Thickness T = double>
 [[nodiscard]] WallResult vessel_wall(const mesh::Surface& lumen, WallOptions<T> options) {
   TUNICA_EXPECT(options.edge > 0, "a wall has an edge length");
-  const Rims rims = rims_of(lumen);
-  const FootFinder finder(lumen);
-  const std::vector<Vec3> targets = wall_points(lumen);
   // A uniform grid of spacing s crosses a surface of area A about 3 A / (2 s^2) times.
-  const double spacing = options.edge * std::sqrt(1.5), tolerance = options.tolerance * options.edge;
+  const double spacing = options.edge * std::sqrt(1.5);
+  detail::WallTrials<T> trials(lumen, options);
   Lenses lenses;
-  std::optional<WallResult> best;
-  double least = std::numeric_limits<double>::infinity();
   constexpr int attempts = 3;
   for (int round = 0; round <= options.refinements; ++round) {
-    std::vector<FarPlace> far;
+    const WallQuads contour = detail::quads_through(lenses, lumen, spacing, trials.rims());
+    WallQuads quads;
     QuadSmoothOptions smooth = options.smooth;
-    const WallQuads contour = detail::quads_through(lenses, lumen, spacing, rims);
+    trials.report().refinements = round, trials.report().lenses = lenses.count();
     for (int attempt = 1; attempt <= attempts; ++attempt, smooth.reach *= 3) {
-      WallQuads quads = contour;
-      WallResult result;
+      quads = contour;
+      trials.report().attempts = attempt;
       try {
-        result.inner = detail::fitted_sheet(quads, finder, rims, targets, smooth, tolerance, result.report);
-        far.clear();
-        result.report.distance = interface_distance(result.inner, targets, finder, tolerance, &far);
-        std::vector<SheetRim> ends;
-        for (std::size_t r = 0; r < rims.curves.size(); ++r)
-          ends.push_back({rims.curves[r].name(), rims.curves[r].plane().normal, quads.loops[r]});
-        Extruded extruded =
-            extrude(result.inner, std::span<const SheetRim>(ends),
-                    ExtrudeOptions<T>{.thickness = options.thickness, .layers = options.layers});
-        result.wall = std::move(extruded.mesh);
-        result.report.extrusion = std::move(extruded.report);
+        trials.fit(quads, smooth);
+        (void)trials.judge(quads);
       } catch (const MeshError&) {
-        if (attempt == attempts && round == options.refinements && !best) throw;
+        if (attempt == attempts && round == options.refinements && !trials.any()) throw;
         continue;
       }
-      result.report.attempts = attempt;
-      result.report.refinements = round, result.report.lenses = lenses.count();
-      result.report.within = far.empty();
-      const double badness = detail::wall_badness(result.report, far, tolerance);
-      const bool sound = result.report.extrusion.quality.inverted == 0;
-      if (badness < least) least = badness, best = std::move(result);
-      if (sound) break;
+      if (trials.sound()) break;
     }
-    if (far.empty() || !detail::add_lenses(lenses, far, options.edge, tolerance, 1 / options.finest)) break;
+    if (!(trials.least() > 0)) break;
+    const auto far = trials.far();
+    const bool more = detail::add_lenses(lenses, far, options.edge, trials.tolerance(), 1 / options.finest);
+    trials.settle(quads, round > 0 || !more);
+    if (!(trials.least() > 0) || !more) break;
   }
-  return std::move(*best);
+  return std::move(trials).best();
 }
 
 }  // namespace tunica::meshing
