@@ -4,8 +4,8 @@
 
 #include "cli.hpp"
 #include "image_pipeline.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/core/units.hpp"
-#include "tunica/image/number_text.hpp"
 #include "tunica/io/crc32.hpp"
 
 #include <algorithm>
@@ -54,7 +54,6 @@ struct Options {
 
   /// Input and all options that the results depend on, in words.
   [[nodiscard]] std::string fingerprint() const {
-    using image::number_text;
     std::string s = "image phantom";
     if (!image.image.empty()) {
       const std::string bytes = io::read_file(image.image);

@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdlib>
 #include <limits>
 #include <string>
 
@@ -55,6 +56,14 @@ TEST_SUITE("unit") {
     CHECK(seven_digits(1e-9) == "1e-09");
     CHECK(seven_digits(1e300) == "1e+300");
     CHECK(place({221.484, 0, -1e-6}) == "(221.484, 0, -1e-06)");
+  }
+
+  TEST_CASE("core: the shortest text of a number reads back to it") {
+    CHECK(number_text(1299.5) == "1299.5");
+    CHECK(number_text(1e6) == "1e6");
+    CHECK(number_text(0.1 + 0.2) == "0.30000000000000004");
+    for (const double x : {1e-300, -1.0 / 3, 2e22, 5e-324})
+      CHECK(std::strtod(number_text(x).c_str(), nullptr) == x);
   }
 
   TEST_CASE("core: a solve report is true only when converged") {

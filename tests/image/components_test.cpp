@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/image/components.hpp"
-#include "tunica/image/number_text.hpp"
 #include "tunica/image/threshold.hpp"
 
 #include <doctest/doctest.h>
@@ -8,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -87,14 +85,6 @@ TEST_SUITE("unit") {
     CHECK(message(image, {.iso = 2346}).empty());
     CHECK(message(image, {.iso = std::nan("")}).find("not a number") != std::string::npos);
     CHECK(message(Image<short>{}, {.iso = 1}) == "the image has no voxels");
-  }
-
-  TEST_CASE("image: the shortest text of a number reads back to it") {
-    CHECK(image::number_text(1299.5) == "1299.5");
-    CHECK(image::number_text(1e6) == "1e6");
-    CHECK(image::number_text(0.1 + 0.2) == "0.30000000000000004");
-    for (const double x : {1e-300, -1.0 / 3, 2e22, 5e-324})
-      CHECK(std::strtod(image::number_text(x).c_str(), nullptr) == x);
   }
 
   TEST_CASE("image: component labels are dense and agree with the counts on noise") {

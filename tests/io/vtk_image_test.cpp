@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/io/vtk_image.hpp"
+#include "tunica/core/text.hpp"
 
-#include "tunica/image/number_text.hpp"
 #include "tunica/image/sampling.hpp"
 #include "tunica/io/vtk_image_write.hpp"
 
@@ -53,7 +53,7 @@ template <class S>
 void check_type(const std::string& name, const std::vector<S>& values) {
   std::string ascii =
       head + "ASCII\n" + grid + "POINT_DATA 6\nSCALARS s " + name + "\nLOOKUP_TABLE default\n";
-  for (const S v : values) ascii += image::number_text(static_cast<double>(v)) + " ";
+  for (const S v : values) ascii += number_text(static_cast<double>(v)) + " ";
   const std::string binary = head + "BINARY\n" + grid + "POINT_DATA 6\nSCALARS s " + name +
                              " 1\nLOOKUP_TABLE default\n" + big(values) + "\n";
   for (const std::string& bytes : {ascii, binary}) {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/image/image.hpp"
-#include "tunica/image/number_text.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 // A time series as a PVD file: it is whole after every step, so that it can be watched while it grows.
 #pragma once
 
-#include "tunica/image/number_text.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/io/atomic_file.hpp"
 #include "tunica/io/vtk_xml.hpp"
 
@@ -30,7 +30,7 @@ class Pvd {
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
         "<Collection>\n";
     for (std::size_t i = 0; i < files_.size(); ++i)
-      text += "<DataSet timestep=\"" + image::number_text(times_[i]) + "\" part=\"0\" file=\"" +
+      text += "<DataSet timestep=\"" + number_text(times_[i]) + "\" part=\"0\" file=\"" +
               detail::xml_text(files_[i]) + "\"/>\n";
     write_file(path_, text + "</Collection>\n</VTKFile>\n");
   }

@@ -2,8 +2,8 @@
 // Strict reader of images from VTK legacy files: STRUCTURED_POINTS and RECTILINEAR_GRID.
 #pragma once
 
+#include "tunica/core/text.hpp"
 #include "tunica/image/image.hpp"
-#include "tunica/image/number_text.hpp"
 #include "tunica/io/lengths.hpp"
 #include "tunica/io/read_file.hpp"
 #include "tunica/io/vtk_legacy.hpp"
@@ -87,7 +87,7 @@ class VtkImageParser {
       spacing_ = triple(key);
       for (std::size_t a = 0; a < 3; ++a)
         if (!((*spacing_)[a] > 0))
-          at().fail("spacing " + std::string(1, "xyz"[a]) + " is " + image::number_text((*spacing_)[a]) +
+          at().fail("spacing " + std::string(1, "xyz"[a]) + " is " + number_text((*spacing_)[a]) +
                     ((*spacing_)[a] < 0 ? ": it would turn all orientations inside out"
                                         : ": cells have no volume"));
     } else if (!rectilinear_ && key == "ORIGIN") {

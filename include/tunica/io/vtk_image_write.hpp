@@ -2,8 +2,8 @@
 // Writer of images as VTK legacy files, binary: STRUCTURED_POINTS, or RECTILINEAR_GRID if uneven.
 #pragma once
 
+#include "tunica/core/text.hpp"
 #include "tunica/image/image.hpp"
-#include "tunica/image/number_text.hpp"
 #include "tunica/io/atomic_file.hpp"
 #include "tunica/io/vtk_types.hpp"
 
@@ -68,8 +68,8 @@ template <class T>
 void write_vtk_image(const std::filesystem::path& path, const image::Image<T>& image,
                      const VtkImageWriteOptions& options = {}) {
   const auto triple = [](const char* key, const auto& v) {
-    return std::string(key) + " " + image::number_text(v[0]) + " " + image::number_text(v[1]) + " " +
-           image::number_text(v[2]) + "\n";
+    return std::string(key) + " " + number_text(v[0]) + " " + number_text(v[1]) + " " + number_text(v[2]) +
+           "\n";
   };
   std::array<double, 3> size{}, origin{}, spacing{};
   bool even = true;
