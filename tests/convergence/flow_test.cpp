@@ -227,15 +227,16 @@ TEST_SUITE("convergence") {
     const auto [u1, p1] = orders({.passes = 1});
     const auto [u3, p3] = orders({.passes = 3});
     const auto [us, ps] = orders({.passes = 1, .rotational = 0});
-    // Theory gives the standard form no more than order 1 and 1/2; here it stops altogether, because the
-    // pressure at the outlet stays where it was prescribed.
     CHECK(order(u1[1], u1[2]) > 1.5);
     CHECK(order(p1[1], p1[2]) > 1.4);
-    CHECK(order(u3[1], u3[2]) > 1.8);
+    CHECK(order(u3[1], u3[2]) > 1.7);
     CHECK(order(p3[1], p3[2]) > 1.4);
     CHECK(u3[2] < 0.2 * u1[2]);
-    CHECK(us[2] > 10 * u1[2]);
-    CHECK(ps[2] > 10 * p1[2]);
+    // The standard form would stop at an outlet where dp is held at the nodes; weakly prescribed, it goes on,
+    // with a larger error.
+    CHECK(order(us[1], us[2]) > 1);
+    CHECK(us[2] > 2 * u1[2]);
+    CHECK(ps[2] > 2 * p1[2]);
   }
 
   TEST_CASE("fluid: second order in time and space on a moving mesh") {

@@ -15,6 +15,8 @@
 
 namespace tunica::fluid {
 
+enum class NullSpace { none, constants };
+
 /// Trilinear functions of a coarse grid over the nodes. For smooth pressures T nearly vanishes, so the
 /// operator gamma L + T is far below gamma L + L_t there, by tau/gamma: those pressures are smooth
 /// enough for a coarse grid, on which the operator itself is factored. Preconditioner of the sum form
@@ -67,10 +69,9 @@ class CoarseSpace {
   [[nodiscard]] Index size() const { return size_; }
 
   /// Z^T A Z and its factors. forward (4 x entries of the pattern): for the entry (i, j) the three Q_ji
-  /// and (gamma L + L_t)_ij; scale: 1 / Mt; prescribed: nodes that are left out.
+  /// and (gamma L + L_t)_ij; scale: 1 / Mt.
   void compute(const la::RowMatrix& pattern, const Eigen::Matrix<double, 4, Eigen::Dynamic>& forward,
-               const Eigen::VectorXd& scale, const std::vector<char>& prescribed) {
-    prescribed_ = prescribed;
+               const Eigen::VectorXd& scale, NullSpace null_space) {
     Dense E = Dense::Zero(size_, size_);
     using Four = Eigen::Matrix<Scalar, 4, 1>;
     const auto* entry = forward.data();
@@ -82,9 +83,7 @@ class CoarseSpace {
     for (int i = 0; i < pattern.rows(); ++i) {
       touched.clear();
       for (int k = outer[i]; k < outer[i + 1]; ++k) {
-        const auto j = static_cast<std::size_t>(inner[k]);
-        if (prescribed[j]) continue;
-        for (const Entry& z : entries_[j]) {
+        for (const Entry& z : entries_[static_cast<std::size_t>(inner[k])]) {
           if (!in[static_cast<std::size_t>(z.function)])
             in[static_cast<std::size_t>(z.function)] = 1, touched.push_back(z.function);
           row(z.function) +=
@@ -95,8 +94,7 @@ class CoarseSpace {
       const auto& own = entries_[static_cast<std::size_t>(i)];
       for (const Index a : touched) {
         const Four& ra = row(a);
-        if (!prescribed[static_cast<std::size_t>(i)])  // z_i (gamma L + L_t)_i. z
-          for (const Entry& z : own) E(z.function, a) += z.weight * ra[3];
+        for (const Entry& z : own) E(z.function, a) += z.weight * ra[3];  // z_i (gamma L + L_t)_i. z
         for (const Index b : touched)
           if (const Four& rb = row(b); b >= a)
             E(b, a) -= s * (ra[0] * rb[0] + ra[1] * rb[1] + ra[2] * rb[2]);  // (Q^T z)^T Mt^-1 (Q^T z)
@@ -104,10 +102,9 @@ class CoarseSpace {
       for (const Index a : touched) row(a).setZero(), in[static_cast<std::size_t>(a)] = 0;
     }
     const double largest = E.diagonal().maxCoeff();
-    for (Index a = 0; a < size_; ++a)  // a function without a free node
+    for (Index a = 0; a < size_; ++a)  // a function without a node
       if (!(E(a, a) > 1e-12 * largest)) E(a, a) = largest;
-    if (std::find(prescribed.begin(), prescribed.end(), 1) == prescribed.end()) {
-      // Constants are in the null space of A: give them the size of the rest.
+    if (null_space == NullSpace::constants) {  // give them the size of the rest
       Vector weight = Vector::Zero(size_);
       for (const auto& entries : entries_)
         for (const Entry& e : entries) weight[e.function] += e.weight;
@@ -117,7 +114,7 @@ class CoarseSpace {
     usable_ = factors_.info() == Eigen::Success && E.allFinite();
   }
 
-  /// z += Z (Z^T A Z)^-1 Z^T r; r zero at the prescribed nodes.
+  /// z += Z (Z^T A Z)^-1 Z^T r.
   void add(const Vector& r, Vector& z) const {
     if (!usable_) return;
     Vector coarse = Vector::Zero(size_);
@@ -125,7 +122,6 @@ class CoarseSpace {
       for (const Entry& e : entries_[i]) coarse[e.function] += e.weight * r[static_cast<Eigen::Index>(i)];
     factors_.solveInPlace(coarse);
     for (std::size_t i = 0; i < entries_.size(); ++i) {
-      if (prescribed_[i]) continue;
       double sum = 0;
       for (const Entry& e : entries_[i]) sum += e.weight * coarse[e.function];
       z[static_cast<Eigen::Index>(i)] += sum;
@@ -140,7 +136,6 @@ class CoarseSpace {
   std::vector<std::array<Entry, 8>> entries_;  // of a node
   Index size_ = 0;
   Eigen::LLT<Dense> factors_;
-  std::vector<char> prescribed_;
   bool usable_ = false;
 };
 

@@ -6,6 +6,7 @@
 #include "tunica/core/text.hpp"
 #include "tunica/fluid/boundary_function.hpp"
 #include "tunica/fluid/field.hpp"
+#include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/patch_nodes.hpp"
 
@@ -36,6 +37,7 @@ struct Condition {
   std::string name;
   Connectivity<3> faces;
   std::vector<Index> nodes;  // ascending
+  std::vector<Index> cells;  // the tetrahedron behind each face
   Kind kind = Kind::wall;
   BoundaryFunction<Vec3> velocity{};  // [m/s]
   BoundaryFunction<double> scalar{};  // a pressure [Pa], or the waveform of a profile
@@ -51,8 +53,12 @@ class Conditions {
   explicit Conditions(const mesh::TetMesh& mesh) : node_count_(static_cast<std::size_t>(mesh.node_count())) {
     Vec3 sum = Vec3(0, 0, 0);
     double area = 0;
+    const mesh::Rows around = mesh::cells_of_nodes(mesh.cells, mesh.node_count());
     for (const auto& patch : mesh.patches) {
-      list_.push_back({.name = patch.name, .faces = patch.faces, .nodes = mesh::patch_nodes(patch)});
+      list_.push_back({.name = patch.name,
+                       .faces = patch.faces,
+                       .nodes = mesh::patch_nodes(patch),
+                       .cells = cells_behind(mesh.cells, around, patch.faces)});
       for (Eigen::Index f = 0; f < patch.faces.cols(); ++f) {
         const Vec3 n = area_vector(mesh.nodes, patch.faces, f);
         for (int c = 0; c < 3; ++c) sum[c] += n[c];
@@ -78,28 +84,21 @@ class Conditions {
   }
   [[nodiscard]] const std::vector<Condition>& list() const { return list_; }
 
-  /// Marks the nodes again after a condition was changed. A node on the edge of a pressure patch whose
-  /// velocity is prescribed answers to continuity, like its neighbours on the wall: were its pressure
-  /// prescribed, only the stabilisation could correct it, by an eighth a step. A patch without any other
-  /// node keeps them.
+  /// Marks the nodes again after a condition was changed.
   void flag() {
-    velocity_.assign(node_count_, 0), pressure_.assign(node_count_, 0);
+    velocity_.assign(node_count_, 0);
     any_pressure_ = false;
-    for (const auto& c : list_)
-      if (c.kind != Kind::pressure)
-        for (const Index n : c.nodes) velocity_[static_cast<std::size_t>(n)] = 1;
     for (const auto& c : list_) {
-      if (c.kind != Kind::pressure) continue;
-      const auto free = [&](Index n) { return !velocity_[static_cast<std::size_t>(n)]; };
-      const bool any_free = std::any_of(c.nodes.begin(), c.nodes.end(), free);
-      for (const Index n : c.nodes)
-        if (free(n) || !any_free) pressure_[static_cast<std::size_t>(n)] = 1, any_pressure_ = true;
+      if (c.kind == Kind::pressure)
+        any_pressure_ = true;
+      else
+        for (const Index n : c.nodes) velocity_[static_cast<std::size_t>(n)] = 1;
     }
   }
 
-  /// One flag a node: its velocity, or its pressure in the pressure equation, is prescribed.
+  /// One flag a node: its velocity is prescribed.
   [[nodiscard]] const std::vector<char>& velocity_flags() const { return velocity_; }
-  [[nodiscard]] const std::vector<char>& pressure_flags() const { return pressure_; }
+  /// Else the pressure is known up to a constant.
   [[nodiscard]] bool any_pressure() const { return any_pressure_; }
 
   /// Writes the prescribed velocities at time t into u (3 x nodes); w: velocity of the grid.
@@ -128,12 +127,6 @@ class Conditions {
         for (const Index n : c.nodes) p[n] = c.scalar(column(x, n), t);
   }
 
-  /// p = 0 where the pressure equation does not prescribe it.
-  void keep_prescribed(Eigen::VectorXd& p) const {
-    for (std::size_t n = 0; n < node_count_; ++n)
-      if (!pressure_[n]) p[static_cast<Eigen::Index>(n)] = 0;
-  }
-
   /// Normal times area of a face, outward [m2].
   [[nodiscard]] static Vec3 area_vector(const Points<3>& x, const Connectivity<3>& faces, Eigen::Index f) {
     const Vec3 a = column(x, faces(0, f)), b = column(x, faces(1, f)), c = column(x, faces(2, f));
@@ -158,9 +151,28 @@ class Conditions {
   }
 
  private:
+  [[nodiscard]] static std::vector<Index> cells_behind(const Connectivity<4>& cells, const mesh::Rows& around,
+                                                       const Connectivity<3>& faces) {
+    std::vector<Index> behind;
+    for (Eigen::Index f = 0; f < faces.cols(); ++f) {
+      const auto has_face = [&](Index e) {
+        int shared = 0;
+        for (int i = 0; i < 3; ++i)
+          for (int a = 0; a < 4; ++a) shared += cells(a, e) == faces(i, f);
+        return shared == 3;
+      };
+      const auto candidates = around[faces(0, f)];
+      const auto found = std::find_if(candidates.begin(), candidates.end(), has_face);
+      if (found == candidates.end())
+        throw MeshError("a face of the fluid's boundary belongs to no tetrahedron");
+      behind.push_back(*found);
+    }
+    return behind;
+  }
+
   std::size_t node_count_;
   std::vector<Condition> list_;
-  std::vector<char> velocity_, pressure_;
+  std::vector<char> velocity_;
   bool any_pressure_ = false;
 };
 

@@ -42,7 +42,7 @@ class InterfaceForce {
       if (c.name == wall.name) continue;
       for (Eigen::Index f = 0; f < c.faces.cols(); ++f)
         if (on_wall(c.faces(0, f)) || on_wall(c.faces(1, f)) || on_wall(c.faces(2, f)))
-          rim_.push_back({k, f, owner(cells, c.faces, f)});
+          rim_.push_back({k, f, c.cells[static_cast<std::size_t>(f)]});
     }
   }
 
@@ -118,17 +118,6 @@ class InterfaceForce {
     return it != nodes_.end() && *it == node ? static_cast<Index>(it - nodes_.begin()) : -1;
   }
   [[nodiscard]] bool on_wall(Index node) const { return find(node) >= 0; }
-
-  [[nodiscard]] Index owner(const Connectivity<4>& cells, const Connectivity<3>& faces,
-                            Eigen::Index f) const {
-    for (const Index e : cells_) {
-      int shared = 0;
-      for (int i = 0; i < 3; ++i)
-        for (int a = 0; a < 4; ++a) shared += cells(a, e) == faces(i, f);
-      if (shared == 3) return e;
-    }
-    throw MeshError("a face of the fluid's boundary belongs to no tetrahedron");
-  }
 
   std::vector<Index> nodes_, cells_;
   std::vector<Rim> rim_;

@@ -3,8 +3,7 @@
 #pragma once
 
 #include "tunica/core/parallel.hpp"
-#include "tunica/fem/assembly.hpp"
-#include "tunica/fem/p1_tets.hpp"
+#include "tunica/fluid/weak_pressure.hpp"
 #include "tunica/la/vector_ops.hpp"
 
 #include <cmath>
@@ -14,16 +13,14 @@
 
 namespace tunica::fluid {
 
-/// A = gamma L + T,  T = L_t - sum_c Q_c Mt^-1 Q_c^T  (nodes x nodes, symmetric, positive semidefinite:
-/// constants are its null space), where
-///   L_ij = (grad N_i, grad N_j),  L_t with weight tau,  Q_c,ij = (tau dN_i/dx_c, N_j),
-///   Mt = lumped (tau N_i, N_j).
-/// T p = (tau grad N_i, grad p - P grad p): it vanishes for a linear p.
-/// Rows of prescribed nodes are zero: a vector that is zero there stays so.
+/// A = gamma L + T,  T = L_t - sum_c Q_c Mt^-1 Q_c^T  (nodes x nodes, symmetric, positive semidefinite),
+/// where
+///   L_ij = (grad N_i, grad N_j) and what weakly prescribed pressures add (WeakFace),
+///   L_t with weight tau and nothing else,  Q_c,ij = (tau dN_i/dx_c, N_j),  Mt = lumped (tau N_i, N_j).
+/// T p = (tau grad N_i, grad p - P grad p): it vanishes for a linear p. Without any prescribed pressure
+/// constants are the null space.
 class PressureOperator {
  public:
-  using Pattern = fem::Assembly<mesh::Tet4, 1>;
-
   explicit PressureOperator(const Pattern& pattern)
       : preconditioning_(pattern.matrix<Eigen::RowMajor>()),
         forward_(4, preconditioning_.nonZeros()),
@@ -31,10 +28,9 @@ class PressureOperator {
         lumped_(pattern.node_count()),
         projected_(3, pattern.node_count()) {}
 
-  /// Refills everything for these elements; tau [m3 s/kg] a cell, gamma = dt / (rho c0) [m3 s/kg].
-  template <class Tets>
-  void assemble(const Pattern& pattern, const Connectivity<4>& cells, const Tets& tets,
-                const std::vector<double>& tau, double gamma, const std::vector<char>& prescribed) {
+  /// Refills everything; tau [m3 s/kg] a cell, gamma = dt / (rho c0) [m3 s/kg].
+  void assemble(const Domain& domain, const std::vector<double>& tau, double gamma) {
+    const auto& [pattern, cells, tets, position_of_nodes, inverse_mass, conditions] = domain;
     forward_.setZero(), backward_.setZero(), lumped_.setZero();
     pattern.for_each_cell([&](Index e) {
       const fem::P1Tet& tet = tets[e];
@@ -53,28 +49,18 @@ class PressureOperator {
         }
       }
     });
+    for_each_weak_face(domain, [&](const WeakFace& face) {
+      for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b)
+          forward_(3, domain.pattern.find(face.node(a), face.node(b))) += gamma * face.entry(a, b);
+    });
     for (Eigen::Index i = 0; i < lumped_.size(); ++i) lumped_[i] = lumped_[i] > 0 ? 1 / lumped_[i] : 0;
-    prescribed_ = prescribed;
-    double* values = preconditioning_.valuePtr();
-    const int *outer = preconditioning_.outerIndexPtr(), *inner = preconditioning_.innerIndexPtr();
-    for (int i = 0; i < preconditioning_.rows(); ++i)
-      for (int k = outer[i]; k < outer[i + 1]; ++k)
-        values[k] = i == inner[k]                                 ? forward_(3, k)
-                    : is_prescribed(i) || is_prescribed(inner[k]) ? 0.0
-                                                                  : forward_(3, k);
+    for (Eigen::Index k = 0; k < forward_.cols(); ++k) preconditioning_.valuePtr()[k] = forward_(3, k);
   }
 
-  /// y = A x. Takes no account of prescribed values in x: the caller zeroes them, or wants their effect.
+  /// y = A x.
   template <class Vector>
   void apply(const Vector& x, Vector& y) const {
-    apply_all(x, y);
-    for (Eigen::Index i = 0; i < y.size(); ++i)
-      if (is_prescribed(static_cast<int>(i))) y[i] = 0;
-  }
-
-  /// y = A x with the rows of the prescribed nodes too.
-  template <class Vector>
-  void apply_all(const Vector& x, Vector& y) const {
     const int *outer = preconditioning_.outerIndexPtr(), *inner = preconditioning_.innerIndexPtr();
     using Four = Eigen::Matrix<typename Vector::Scalar, 4, 1>;
     const double *forward = forward_.data(), *backward = backward_.data();
@@ -116,21 +102,18 @@ class PressureOperator {
   /// 1 / Mt, 0 at nodes without stabilisation: nodes.
   [[nodiscard]] const Eigen::VectorXd& inverse_mass() const { return lumped_; }
 
-  /// Entries (i, j) in the order of preconditioning(): Q_ji and (gamma L + L_t)_ij, nothing left out.
+  /// Entries (i, j) in the order of preconditioning(): Q_ji and (gamma L + L_t)_ij.
   [[nodiscard]] const Eigen::Matrix<double, 4, Eigen::Dynamic>& entries() const { return forward_; }
 
-  /// gamma L + L_t with the coupling cut at prescribed nodes: what incomplete factors are made of.
+  /// gamma L + L_t: what incomplete factors are made of.
   [[nodiscard]] const la::RowMatrix& preconditioning() const { return preconditioning_; }
 
  private:
-  [[nodiscard]] bool is_prescribed(int i) const { return prescribed_[static_cast<std::size_t>(i)] != 0; }
-
   la::RowMatrix preconditioning_;
   Eigen::Matrix<double, 4, Eigen::Dynamic> forward_;   // an entry (i, j): Q_ji and gamma L + L_t
   Eigen::Matrix<double, 3, Eigen::Dynamic> backward_;  // an entry (i, j): Q_ij
   Eigen::VectorXd lumped_;                             // 1 / Mt
   mutable Points<3> projected_;                        // Mt^-1 Q^T x
-  std::vector<char> prescribed_;
 };
 
 }  // namespace tunica::fluid

@@ -9,6 +9,7 @@
 #include "tunica/fluid/momentum.hpp"
 #include "tunica/fluid/pressure_operator.hpp"
 #include "tunica/fluid/state.hpp"
+#include "tunica/fluid/weak_pressure.hpp"
 #include "tunica/la/cg.hpp"
 #include "tunica/la/preconditioner.hpp"
 
@@ -16,7 +17,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <utility>
 #include <vector>
 
 namespace tunica::fluid {
@@ -53,19 +53,11 @@ class PressureStep {
     prepare(domain);
   }
 
-  /// A x = b with x prescribed (on entry, at the nodes with prescribed pressure); elsewhere guess starts
-  /// it. Without any prescribed pressure the mean of x is zero, and b loses what no x can balance.
-  /// most: of |b - A x|, on top of the relative tolerance.
-  SolveReport solve(const Domain& domain, Vector b, double round_off, const Vector& guess,
-                    const la::KrylovOptions& options, Vector& x,
-                    double most = std::numeric_limits<double>::infinity()) {
-    const auto& prescribed = domain.conditions.pressure_flags();
-    operator_.apply(x, product_);
-    round_off = std::max(round_off, la::norm(product_));
-    b -= product_;
-    start_ = guess;
-    for (std::size_t i = 0; i < prescribed.size(); ++i)
-      if (prescribed[i]) b[static_cast<Eigen::Index>(i)] = start_[static_cast<Eigen::Index>(i)] = 0;
+  /// A x = b; x starts from what it holds. The prescribed increments are weighed in b. Without any prescribed
+  /// pressure the mean of x is zero, and b loses what no x can balance. most: of |b - A x|, on top of the
+  /// relative tolerance.
+  SolveReport solve(const Domain& domain, Vector b, double round_off, const la::KrylovOptions& options,
+                    Vector& x, double most = std::numeric_limits<double>::infinity()) {
     const Vector mass = domain.inverse_mass.cwiseInverse();
     const bool enclosed = !domain.conditions.any_pressure();
     if (enclosed) b -= (b.sum() / mass.sum()) * mass;
@@ -73,12 +65,21 @@ class PressureStep {
     with_floor.absolute = 1e-14 * round_off;
     const double size = la::norm(b);
     if (most < options.tolerance * size) with_floor.tolerance = most / size;
-    SolveReport report = la::cg(operator_, TwoLevel{cholesky_, coarse_}, b, start_, with_floor);
-    if (report.status == Status::stalled && report.residual * size < operator_.round_off(start_))
+    SolveReport report = la::cg(operator_, TwoLevel{cholesky_, coarse_}, b, x, with_floor);
+    if (report.status == Status::stalled && report.residual * size < operator_.round_off(x))
       report.status = Status::converged;  // as exact as double precision can tell
-    if (enclosed) start_.array() -= start_.dot(mass) / mass.sum();
-    x += start_;
+    if (enclosed) x.array() -= x.dot(mass) / mass.sum();
     return report;
+  }
+
+  /// gamma times what the prescribed increments (nodes) add to the right-hand side.
+  [[nodiscard]] Vector prescribe(const Domain& domain, const Vector& prescribed) {
+    Vector right = Vector::Zero(prescribed.size());
+    start_.setZero(prescribed.size());
+    for_each_weak_face(domain, [&](const WeakFace& face) {
+      for (int i = 0; i < 4; ++i) right[face.node(i)] -= gamma_ * face.form(i, start_, prescribed);
+    });
+    return right;
   }
 
   /// From the predicted velocity u (3 x nodes) and the pressure p to those at the end of the pass.
@@ -90,12 +91,12 @@ class PressureStep {
     divergence(domain, u);
     stabilise(domain, p, force);
     if (!domain.conditions.any_pressure() && leaks(domain, u)) return {Status::diverged, 0, 1};
-    right_ = -(divergence_ + stabilised_);
+    right_ = prescribe(domain, change) - (divergence_ + stabilised_);
     double through = 0, along = 0;
-    predicted_flux_.clear();
+    consistent_flux_.clear();
     for (const Condition& c : domain.conditions.list()) {
-      predicted_flux_.push_back(Conditions::flux(domain.position, c.faces, u));
-      through += std::abs(predicted_flux_.back()) / 2;
+      consistent_flux_.push_back(Conditions::flux(domain.position, c.faces, u));
+      through += std::abs(consistent_flux_.back()) / 2;
       for (Eigen::Index f = 0; f < c.faces.cols(); ++f)
         along +=
             length(column(u, c.faces(0, f))) * length(Conditions::area_vector(domain.position, c.faces, f));
@@ -104,36 +105,31 @@ class PressureStep {
     constexpr double loss = 1e-9, tangential = 1e-8;  // of the flow; of the flow along the boundary: none
     double most = std::numeric_limits<double>::infinity();
     if (through > tangential * along) most = loss * through / std::sqrt(static_cast<double>(p.size()));
-    Vector increment = change;
-    domain.conditions.keep_prescribed(increment);
+    increment_ = guess;
     const SolveReport report =
-        solve(domain, right_, la::norm(divergence_) + la::norm(stabilised_), guess, options, increment, most);
-    operator_.apply_all(increment, product_);
-    reaction_ = right_ - product_;  // the flux that leaves at nodes where the pressure is prescribed
-    // u = u* - gamma M^-1 int N grad dp
-    gradient(domain, increment);
-    weigh_edges(domain, increment, change);
+        solve(domain, right_, la::norm(divergence_) + la::norm(stabilised_), options, increment_, most);
+    // u = u* - gamma M^-1 (int N grad dp - <N (dp - change) n>)
+    gradient(domain, increment_);
+    load_patches(domain, increment_, change);
     const SolveReport projected = mass_.solve(domain, gradient_);
     if (!projected) return projected;
     for (Eigen::Index i = 0; i < u.size(); ++i) u.data()[i] -= gamma_ * gradient_.data()[i];
-    // p = p^k + dp - chi mu M_L^-1 (D u* + T (p^k + dp)). The stabilised divergence, not D u* alone: where
-    // dp is prescribed the pressure moves until continuity holds in those rows too, and then it rests.
-    p += increment + rotational * domain.inverse_mass.cwiseProduct(reaction_ + gamma_ * laplacian_);
-    if (rotational > 0 && domain.conditions.any_pressure()) balance_outlets(domain, force, u, p);
+    // p = p^k + dp - chi mu M_L^-1 (D u* + T (p^k + dp)), where D u* + T (p^k + dp) = -gamma L dp
+    // T alone could outweigh M_L where elements are flat and viscous: then the update would overshoot.
+    p += increment_;
+    for (Eigen::Index i = 0; i < p.size(); ++i)
+      p[i] += rotational * gamma_ * laplacian_[i] /
+              std::max(1 / domain.inverse_mass[i], rotational * diagonal_[i]);
     return report;
   }
 
   /// Fluxes after correct(): u at the end of the step, w of the grid (3 x nodes).
   [[nodiscard]] MassBalance balance(const Domain& domain, const Field& u, const Field& w) const {
     MassBalance mass;
-    std::vector<char> seen(static_cast<std::size_t>(u.cols()), 0);
-    for (std::size_t k = 0; k < predicted_flux_.size(); ++k) {
+    for (std::size_t k = 0; k < consistent_flux_.size(); ++k) {
       const Condition& c = domain.conditions.list()[k];
       mass.unbalanced += Conditions::flux(domain.position, c.faces, u);
-      double q = predicted_flux_[k];  // int N_i u.n = int N_i u*.n + the reaction of row i, summed
-      if (c.kind == Kind::pressure)
-        for (const Index n : c.nodes)
-          if (!std::exchange(seen[static_cast<std::size_t>(n)], 1)) q += reaction_[n];
+      const double q = consistent_flux_[k];
       mass.discrete += q;
       if (c.kind == Kind::wall)
         mass.swept += Conditions::flux(domain.position, c.faces, w);
@@ -152,11 +148,19 @@ class PressureStep {
 
   void prepare(const Domain& domain) {
     mass_.assemble(domain);
-    operator_.assemble(domain.pattern, domain.cells, domain.tets, tau_, gamma_,
-                       domain.conditions.pressure_flags());
+    diagonal_.setZero(domain.position.cols());
+    domain.pattern.for_each_cell([&](Index e) {
+      const fem::P1Tet& tet = domain.tets[e];
+      const double weight = tau_[static_cast<std::size_t>(e)] * tet.volume;
+      for (int i = 0; i < 4; ++i) {
+        const Vec3 g(tet.grad(0, i), tet.grad(1, i), tet.grad(2, i));
+        diagonal_[domain.cells(i, e)] += weight * dot(g, g);
+      }
+    });
+    operator_.assemble(domain, tau_, gamma_);
     cholesky_.compute(operator_.preconditioning());
     coarse_.compute(operator_.preconditioning(), operator_.entries(), operator_.inverse_mass(),
-                    domain.conditions.pressure_flags());
+                    domain.conditions.any_pressure() ? NullSpace::none : NullSpace::constants);
   }
 
   /// divergence_ = int N div u.
@@ -184,16 +188,22 @@ class PressureStep {
     });
   }
 
-  /// The load of a pressure patch changes by what is prescribed, also where dp is free: on its edge.
-  void weigh_edges(const Domain& domain, const Vector& increment, const Vector& change) {
-    for (const Condition& c : domain.conditions.list()) {
+  /// The load on a pressure patch changes by what is prescribed, and not by dp: gradient_ -= <N (dp - c) n>.
+  /// What the weak form adds to L dp, and to the flux through the patch.
+  void load_patches(const Domain& domain, const Vector& increment, const Vector& change) {
+    for (std::size_t k = 0; k < domain.conditions.list().size(); ++k) {
+      const Condition& c = domain.conditions.list()[k];
       if (c.kind != Kind::pressure) continue;
       for (Eigen::Index f = 0; f < c.faces.cols(); ++f) {
         Vec3 excess;
         for (int i = 0; i < 3; ++i) excess[i] = increment[c.faces(i, f)] - change[c.faces(i, f)];
-        if (excess[0] == 0 && excess[1] == 0 && excess[2] == 0) continue;
         const Vec3 n = Conditions::area_vector(domain.position, c.faces, f), load = face_load(1, excess);
         for (int i = 0; i < 3; ++i) add(gradient_, c.faces(i, f), -load[i], n);
+        const WeakFace face(domain, c, f);
+        for (int i = 0; i < 4; ++i) {
+          const double q = face.form(i, increment, change);
+          laplacian_[face.node(i)] += q, consistent_flux_[k] += gamma_ * q;
+        }
       }
     }
   }
@@ -225,20 +235,6 @@ class PressureStep {
     });
   }
 
-  /// The rows of continuity of the nodes where the pressure is prescribed were not solved for, and what they
-  /// miss is the mass defect. There too the pressure moves until they hold: p -= omega (D u + T p) / diag(A).
-  /// At most 3 nodes of a cell lie on a patch, so diag(A)^-1 A is at most 3 there, and omega < 2/3 is stable.
-  void balance_outlets(const Domain& domain, const Field& force, const Field& u, Vector& p) {
-    constexpr double omega = 0.5;
-    divergence(domain, u);
-    stabilise(domain, p, force);
-    const Vector diagonal = operator_.preconditioning().diagonal();
-    const auto& prescribed = domain.conditions.pressure_flags();
-    for (Eigen::Index i = 0; i < p.size(); ++i)
-      if (prescribed[static_cast<std::size_t>(i)])
-        p[i] -= omega * (divergence_[i] + stabilised_[i]) / diagonal[i];
-  }
-
   /// Without prescribed pressure what flows in must flow out, up to the error of the boundary data.
   [[nodiscard]] bool leaks(const Domain& domain, const Field& u) const {
     constexpr double tolerated = 0.05;  // nodal values of a smooth divergence-free field on a coarse mesh
@@ -257,9 +253,10 @@ class PressureStep {
   ConsistentMass<Scalar> mass_;
   std::vector<double> tau_;  // [m3 s/kg] a cell
   double gamma_ = 0;         // dt / (rho c0) [m3 s/kg]
-  Vector divergence_, stabilised_, right_, product_, start_, reaction_, laplacian_;
+  Vector divergence_, stabilised_, right_, start_, increment_, laplacian_;
+  Vector diagonal_;  // of L_t
   Field gradient_;
-  std::vector<double> predicted_flux_;  // of u* through each patch [m3/s]
+  std::vector<double> consistent_flux_;  // through each patch: int N u.n of the continuity equation [m3/s]
 };
 
 }  // namespace tunica::fluid

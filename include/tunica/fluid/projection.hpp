@@ -150,10 +150,10 @@ class Projection {
     pressure_step_.assemble_laplacian(domain, 1);
     Points<3> rate;
     combine(1 / dt, next_u_, -1 / dt, u_, rate);
-    const Eigen::VectorXd right = initial_source(domain, fluid_.density, u_, rate, force_);
     conditions_.impose_pressure(state_.position, t, p_);
-    conditions_.keep_prescribed(p_);
-    report = pressure_step_.solve(domain, right, 0, zero, options, p_);
+    const Eigen::VectorXd right =
+        initial_source(domain, fluid_.density, u_, rate, force_) + pressure_step_.prescribe(domain, p_);
+    report = pressure_step_.solve(domain, right, 0, options, p_);
     if (!report) return report;
     state_.velocity = state_.velocity_old = u_;
     state_.pressure = state_.pressure_old = p_;
