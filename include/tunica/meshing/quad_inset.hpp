@@ -49,7 +49,7 @@ namespace detail {
   }
   std::vector<Index> once = loop;
   std::sort(once.begin(), once.end());
-  const bool simple = std::adjacent_find(once.begin(), once.end()) == once.end();
+  [[maybe_unused]] const bool simple = std::adjacent_find(once.begin(), once.end()) == once.end();
   TUNICA_EXPECT(simple && loop.size() == sides.size() && !loop.empty(), "a block has one border");
   return loop;
 }
