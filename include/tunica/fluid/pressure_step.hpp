@@ -74,10 +74,10 @@ class PressureStep {
 
   /// gamma times what the prescribed increments (nodes) add to the right-hand side.
   [[nodiscard]] Vector prescribe(const Domain& domain, const Vector& prescribed) {
-    Vector right = Vector::Zero(prescribed.size());
-    start_.setZero(prescribed.size());
+    const Vector none = Vector::Zero(prescribed.size());
+    Vector right = none;
     for_each_weak_face(domain, [&](const WeakFace& face) {
-      for (int i = 0; i < 4; ++i) right[face.node(i)] -= gamma_ * face.form(i, start_, prescribed);
+      for (int i = 0; i < 4; ++i) right[face.node(i)] -= gamma_ * face.form(i, none, prescribed);
     });
     return right;
   }
@@ -114,8 +114,8 @@ class PressureStep {
     const SolveReport projected = mass_.solve(domain, gradient_);
     if (!projected) return projected;
     for (Eigen::Index i = 0; i < u.size(); ++i) u.data()[i] -= gamma_ * gradient_.data()[i];
-    // p = p^k + dp - chi mu M_L^-1 (D u* + T (p^k + dp)), where D u* + T (p^k + dp) = -gamma L dp
-    // T alone could outweigh M_L where elements are flat and viscous: then the update would overshoot.
+    // p = p^k + dp - chi mu M_L^-1 (D u* + T (p^k + dp)), where D u* + T (p^k + dp) = -gamma L dp. Where
+    // elements are flat and viscous chi mu T outweighs M_L, and the update would overshoot.
     p += increment_;
     for (Eigen::Index i = 0; i < p.size(); ++i)
       p[i] += rotational * gamma_ * laplacian_[i] /
@@ -188,8 +188,8 @@ class PressureStep {
     });
   }
 
-  /// The load on a pressure patch changes by what is prescribed, and not by dp: gradient_ -= <N (dp - c) n>.
-  /// What the weak form adds to L dp, and to the flux through the patch.
+  /// On pressure patches: the load changes by what is prescribed and not by dp, gradient_ -= <N (dp - c) n>,
+  /// and the weak form adds its terms to laplacian_ and to the flux through the patch.
   void load_patches(const Domain& domain, const Vector& increment, const Vector& change) {
     for (std::size_t k = 0; k < domain.conditions.list().size(); ++k) {
       const Condition& c = domain.conditions.list()[k];
@@ -253,7 +253,7 @@ class PressureStep {
   ConsistentMass<Scalar> mass_;
   std::vector<double> tau_;  // [m3 s/kg] a cell
   double gamma_ = 0;         // dt / (rho c0) [m3 s/kg]
-  Vector divergence_, stabilised_, right_, start_, increment_, laplacian_;
+  Vector divergence_, stabilised_, right_, increment_, laplacian_;
   Vector diagonal_;  // of L_t
   Field gradient_;
   std::vector<double> consistent_flux_;  // through each patch: int N u.n of the continuity equation [m3/s]
