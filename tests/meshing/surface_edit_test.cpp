@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The parts that smoothing, cutting and remeshing share: flat regions, sections, caps, edits, volumes.
 #include "tunica/meshing/cap.hpp"
-#include "tunica/meshing/cap_planes.hpp"
 #include "tunica/meshing/cut_snap.hpp"
 #include "tunica/meshing/cut_split.hpp"
 #include "tunica/meshing/edit_flips.hpp"
@@ -151,17 +150,17 @@ TEST_SUITE("unit") {
   TEST_CASE("meshing: a cap lies in its plane as far as single precision tells") {
     auto s = cube(3);
     s.nodes *= 1.1;
-    const auto planes = meshing::cap_planes(s);
+    const auto planes = meshing::flat_regions(s);
     REQUIRE(planes.size() == 2);
     CHECK_FALSE(planes[0]);  // the wall
     REQUIRE(planes[1]);
     CHECK(vec::distance(planes[1]->normal, {0, 0, 1}) < 1e-14);
     CHECK(vec::distance(planes[1]->point, {1.65, 1.65, 3.3}) < 1e-13);
     s.nodes = s.nodes.cast<float>().cast<double>().eval();
-    CHECK(meshing::cap_planes(s)[1]);
+    CHECK(meshing::flat_regions(s)[1]);
     for (Index n = 0; n < s.node_count(); ++n)
       if (s.nodes(2, n) > 3) s.nodes(2, n) += 1e-3 * s.nodes(0, n) * s.nodes(0, n);
-    CHECK_FALSE(meshing::cap_planes(s)[1]);
+    CHECK_FALSE(meshing::flat_regions(s)[1]);
   }
 
   TEST_CASE("meshing: nodes beside a cut are moved onto it and what is kept is closed") {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "tunica/core/vec.hpp"
+#include "tunica/mesh/measures.hpp"
 #include "tunica/mesh/mesh.hpp"
-#include "tunica/meshing/cap_planes.hpp"
 
 #include <array>
 #include <cmath>
