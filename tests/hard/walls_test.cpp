@@ -159,7 +159,7 @@ TEST_SUITE("hard") {
     meshing::WallReport sound;
     sound.extrusion.quality.scaled_jacobian.least = 0.3;
     auto thin = sound, flat = sound, inverted = sound;
-    thin.extrusion.least_share = 0.35;
+    thin.extrusion.least_between = 0.35;
     flat.extrusion.quality.scaled_jacobian.least = 0.1;
     inverted.extrusion.quality.inverted = 1;
     const std::vector<meshing::FarPlace> far(20, {Vec3::Zero(), 0.3});

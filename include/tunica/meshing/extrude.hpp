@@ -9,6 +9,8 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/meshing/extrude_field.hpp"
+#include "tunica/meshing/split_quads.hpp"
+#include "tunica/meshing/surface_foot.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -23,6 +25,7 @@ namespace tunica::meshing {
 struct ExtrudeReport {
   Index thinned = 0;                       // nodes where it gave way by more than 1 %
   double least_share = 1, mean_share = 1;  // thickness over the thickness asked for, at the nodes
+  double least_between = 1;                // the same at the middles of the outer faces and of their sides
   Vec3 thinnest = Vec3::Zero();            // inner node of it
   Vec3 thinned_centre = Vec3::Zero();      // mean of the nodes that gave way
   double deviation_rms = 0,
@@ -68,6 +71,27 @@ inline void add_extruded_patches(mesh::HexMesh& mesh, const mesh::QuadSurface& s
   for (auto& end : ends) mesh.patches.push_back(std::move(end));
 }
 
+/// Least distance from the sheet of the middles of the outermost faces and of their sides, over the thickness
+/// asked for there.
+template <class Field>
+[[nodiscard]] double least_between(const mesh::QuadSurface& sheet, const Field& field) {
+  const mesh::Surface triangles = split_quads(sheet);
+  const FootFinder finder(triangles);
+  double least = 1;
+  for (Index q = 0; q < sheet.cell_count(); ++q) {
+    const auto end = [&](int k) {
+      const Index n = sheet.cells(k % 4, q);
+      return vec::along(vec::column(sheet.nodes, n), 1, field.offset(n));
+    };
+    const double thickness = field.wanted(q);
+    const auto measure = [&](const Vec3& x) { least = std::min(least, finder.distance(x) / thickness); };
+    measure(vec::between(vec::between(end(0), end(2), 0.5), vec::between(end(1), end(3), 0.5), 0.5));
+    for (int k = 0; k < 4; ++k)
+      if (sheet.cells(k, q) < sheet.cells((k + 1) % 4, q)) measure(vec::between(end(k), end(k + 1), 0.5));
+  }
+  return least;
+}
+
 }  // namespace detail
 
 /// Extrudes the sheet to the side of its normals. Patches "inner" (towards the lumen), "outer", "ends", then
@@ -104,6 +128,7 @@ template <Thickness T = double>
     if (share < 0.99) ++report.thinned, report.thinned_centre += vec::column(sheet.nodes, n);
   }
   if (report.thinned > 0) report.thinned_centre = vec::scaled(1.0 / report.thinned, report.thinned_centre);
+  report.least_between = detail::least_between(sheet, field);
   Index faces = 0;
   for (Index q = 0; q < quads; ++q) {
     const auto deviation = field.deviation(q);

@@ -75,6 +75,13 @@ class ExtrudeField {
   [[nodiscard]] Vec3 offset(Index n) const { return offset_[at(n)]; }
   [[nodiscard]] double share(Index n) const { return share_[at(n)]; }
 
+  /// The thickness asked for at the middle of a face.
+  [[nodiscard]] double wanted(Index q) const {
+    double sum = 0;
+    for (int k = 0; k < 4; ++k) sum += thickness_[at(sheet_.cells(k, q))] / 4;
+    return sum;
+  }
+
   /// Relative deviation of a face's thickness from that asked for; none where it gave way.
   [[nodiscard]] std::optional<double> deviation(Index q) const {
     double sum = 0;
@@ -89,12 +96,6 @@ class ExtrudeField {
  private:
   [[nodiscard]] static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(sheet_.node_count()); }
-  /// The thickness asked for at the middle of a face.
-  [[nodiscard]] double wanted(Index q) const {
-    double sum = 0;
-    for (int k = 0; k < 4; ++k) sum += thickness_[at(sheet_.cells(k, q))] / 4;
-    return sum;
-  }
   [[nodiscard]] Vec3 x(Index q, int k) const { return node(sheet_.cells(k, q)); }
   [[nodiscard]] Vec3 node(Index n) const { return vec::column(sheet_.nodes, n); }
 

@@ -35,14 +35,18 @@ struct MissedPlace {
   Index quad = -1;
   double distance = 0;
 };
-[[nodiscard]] inline MissedPlace most_missed(const WallQuads& wall, const std::vector<Vec3>& targets) {
+/// The places given up, and all within `apart` of them, do not count.
+[[nodiscard]] inline MissedPlace most_missed(const WallQuads& wall, const std::vector<Vec3>& targets,
+                                             const std::vector<Vec3>& given_up, double apart) {
   const mesh::Surface fans = fans_of_quads(wall.nodes, wall.cells);
   const FootFinder sheet(fans);
   MissedPlace worst;
   for (const Vec3& x : targets) {
     const QuadFoot foot = quad_foot(sheet, x);
     const double distance = vec::distance(foot.point, x);
-    if (distance > worst.distance) worst = {x, foot.quad, distance};
+    const bool open = std::none_of(given_up.begin(), given_up.end(),
+                                   [&](const Vec3& y) { return vec::distance(x, y) < apart; });
+    if (open && distance > worst.distance) worst = {x, foot.quad, distance};
   }
   return worst;
 }
@@ -85,7 +89,8 @@ struct GrownQuads {
 }  // namespace detail
 
 /// targets: points of the surface that the sheet must come near to; judge(wall): how bad a sheet is, 0 when
-/// it needs no more. Keeps each ring that makes it better, settled; gives the number of rings.
+/// it needs no more. Keeps each ring that makes it better, settled; where none does the place is given up.
+/// Gives the number of rings.
 template <FootSurface S, class Judge>
 int grow_quads(WallQuads& wall, const S& surface, const Rims& rims, const std::vector<Vec3>& targets,
                const QuadGrowOptions& options, Judge&& judge) {
@@ -93,9 +98,11 @@ int grow_quads(WallQuads& wall, const S& surface, const Rims& rims, const std::v
   constexpr std::size_t finalists = 3;
   constexpr double aim = 0.9;  // of the tolerance
   double value = judge(wall);
-  for (int ring = 0; ring < options.rings; ++ring) {
-    const detail::MissedPlace missed = detail::most_missed(wall, targets);
-    if (!(value > 0) || !(missed.distance > options.tolerance)) return ring;
+  std::vector<Vec3> given_up;
+  int rings = 0;
+  while (rings < options.rings) {
+    const auto missed = detail::most_missed(wall, targets, given_up, options.edge);
+    if (!(value > 0) || !(missed.distance > options.tolerance)) break;
     QuadSettleOptions settle{.tolerance = aim * options.tolerance,
                              .rounds = first_rounds,
                              .centre = missed.place,
@@ -124,9 +131,12 @@ int grow_quads(WallQuads& wall, const S& surface, const Rims& rims, const std::v
       if (!(now < value)) continue;
       value = now, wall = std::move(t.wall), better = true;
     }
-    if (!better) return ring;
+    if (better)
+      ++rings;
+    else
+      given_up.push_back(missed.place);
   }
-  return options.rings;
+  return rings;
 }
 
 }  // namespace tunica::meshing

@@ -24,6 +24,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -73,14 +74,19 @@ namespace detail {
   for (const FarPlace& place : far) sum += place.distance / tolerance - 1;
   if (quality.inverted > 0) sum += 1e6 * quality.inverted;
   if (!(quality.scaled_jacobian.least >= sound)) sum += 1e3 * (sound - quality.scaled_jacobian.least);
-  if (!(report.extrusion.least_share >= thick)) sum += 500 * (thick - report.extrusion.least_share);
+  const double share = std::min(report.extrusion.least_share, report.extrusion.least_between);
+  if (!(share >= thick)) sum += 500 * (thick - share);
   return sum;
 }
 
 /// Higher is better, among walls that are equally bad.
 [[nodiscard]] inline double wall_worth(const WallReport& report) {
-  return std::min(report.extrusion.quality.scaled_jacobian.least, 0.3) + 0.3 * report.extrusion.least_share;
+  const auto& e = report.extrusion;
+  return std::min(e.quality.scaled_jacobian.least, 0.3) + 0.3 * std::min(e.least_share, e.least_between);
 }
+
+/// How hard to try to grow branches.
+enum class Growth { none, once, thorough };
 
 /// Extrudes sheets of one lumen, measures the walls and keeps the best.
 template <Thickness T>
@@ -132,30 +138,39 @@ class WallTrials {
     return badness;
   }
 
-  /// Settles the nodes where the sheet lies too far from the lumen, then grows the branches that it misses
-  /// if that is asked for.
-  void settle(WallQuads& quads, bool grow) {
+  /// Settles the nodes where a sheet lies too far from the lumen; then grows the branches that it misses,
+  /// from the sheet as settled, and, thoroughly, if that is not enough from the sheet as it was.
+  void settle(const WallQuads& fitted, Growth growth) {
     const QuadSettleOptions all{.tolerance = 0.9 * tolerance()};
-    const auto before = quads.cells.cols();
-    const auto value = [&](const WallQuads& sheet) {
-      report_.grown = static_cast<Index>(sheet.cells.cols() - before);
-      try {
-        return judge(sheet);
-      } catch (const MeshError&) {
-        return std::numeric_limits<double>::infinity();
-      }
-    };
-    settle_quads(quads, finder_, rims_, targets_, all);
-    if (!(value(quads) > 0) || !grow) return;
-    const int rings =
-        grow_quads(quads, finder_, rims_, targets_, {.edge = options_.edge, .tolerance = tolerance()}, value);
-    if (rings == 0) return;
-    settle_quads(quads, finder_, rims_, targets_, all);
-    (void)value(quads);
-    report_.grown = 0;
+    WallQuads settled = fitted;
+    settle_quads(settled, finder_, rims_, targets_, all);
+    if (!(value(settled, fitted) > 0)) return;
+    std::vector<WallQuads> starts;
+    if (growth != Growth::none) starts.push_back(std::move(settled));
+    if (growth == Growth::thorough) starts.push_back(fitted);
+    for (WallQuads& quads : starts) {
+      const int rings =
+          grow_quads(quads, finder_, rims_, targets_, {.edge = options_.edge, .tolerance = tolerance()},
+                     [&](const WallQuads& sheet) { return value(sheet, fitted); });
+      if (rings == 0) continue;
+      settle_quads(quads, finder_, rims_, targets_, all);
+      if (!(value(quads, fitted) > 0)) return;
+    }
   }
 
  private:
+  /// The badness of a sheet grown from that one; infinite where it folds.
+  double value(const WallQuads& sheet, const WallQuads& from) {
+    report_.grown = static_cast<Index>(sheet.cells.cols() - from.cells.cols());
+    double badness = std::numeric_limits<double>::infinity();
+    try {
+      badness = judge(sheet);
+    } catch (const MeshError&) {  // it folds
+    }
+    report_.grown = 0;
+    return badness;
+  }
+
   const WallOptions<T> options_;
   const Rims rims_;
   const FootFinder finder_;
@@ -183,30 +198,39 @@ template <Thickness T = double>
   const double spacing = options.edge * std::sqrt(1.5);
   detail::WallTrials<T> trials(lumen, options);
   Lenses lenses;
-  constexpr int attempts = 3;
+  std::string folded;  // why there is no wall yet
   for (int round = 0; round <= options.refinements; ++round) {
-    const WallQuads contour = detail::quads_through(lenses, lumen, spacing, trials.rims());
-    WallQuads quads;
+    WallQuads contour, quads;
+    try {
+      contour = detail::quads_through(lenses, lumen, spacing, trials.rims());
+    } catch (const MeshError&) {
+      if (!trials.any()) throw;
+      break;
+    }
     QuadSmoothOptions smooth = options.smooth;
     trials.report().refinements = round, trials.report().lenses = lenses.count();
+    constexpr int attempts = 3;
     for (int attempt = 1; attempt <= attempts; ++attempt, smooth.reach *= 3) {
       quads = contour;
       trials.report().attempts = attempt;
       try {
         trials.fit(quads, smooth);
         (void)trials.judge(quads);
-      } catch (const MeshError&) {
-        if (attempt == attempts && round == options.refinements && !trials.any()) throw;
-        continue;
+      } catch (const MeshError& error) {
+        folded = error.what();
       }
       if (trials.sound()) break;
     }
     if (!(trials.least() > 0)) break;
     const auto far = trials.far();
     const bool more = detail::add_lenses(lenses, far, options.edge, trials.tolerance(), 1 / options.finest);
-    trials.settle(quads, round > 0 || !more);
+    if (!more || round == options.refinements)
+      trials.settle(quads, detail::Growth::thorough);
+    else
+      trials.settle(quads, round > 0 ? detail::Growth::once : detail::Growth::none);
     if (!(trials.least() > 0) || !more) break;
   }
+  if (!trials.any()) throw MeshError(folded);
   return std::move(trials).best();
 }
 
