@@ -12,6 +12,7 @@
 #include "tunica/solid/laws.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 int main() {
@@ -38,14 +39,13 @@ int main() {
       coupling::staggered(blood, wall, motion::Laplace{lumen}, coupling::Matching{}, coupling::IqnIls{});
 
   const auto radial = [&] {  // mean displacement of the ring at mid-length [m]
-    const Points<3> u = wall.displacement();
+    const Points<3> u = wall.nodal_displacement();
     double sum = 0;
-    for (int j = 0; j < 18; ++j) {
-      const Index ring = 15 * 18 + j;
-      sum += u.col(ring).dot(
-          tube.nodes.col(wall.interface_nodes()[ring]).cwiseProduct(Vec3(1, 1, 0)).normalized());
-    }
-    return sum / 18;
+    int nodes = 0;
+    for (const Index n : wall.interface_nodes())
+      if (const Vec3 x = tube.nodes.col(n); std::abs(x[2] - shape.length / 2) < 1_um)
+        sum += u.col(n).dot(Vec3(x[0], x[1], 0).normalized()), ++nodes;
+    return sum / nodes;
   };
   double peak = 0;
   int iterations = 0;
