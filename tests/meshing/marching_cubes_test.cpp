@@ -4,6 +4,7 @@
 #include "tunica/meshing/marching_cubes_table.hpp"
 
 #include "support/work_cases.hpp"
+#include "tunica/core/parallel.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/mesh/topology.hpp"
 
@@ -131,6 +132,20 @@ TEST_SUITE("unit") {
     CHECK(t.loops.size() == 2);
     CHECK(t.manifold());
     CHECK(t.genus() == 0);
+  }
+
+  TEST_CASE("meshing: marching cubes gives the same bits on any number of threads") {
+    auto im = test::noise_volume(20);
+    for (float& v : im.values) v += 0.5F;  // into the border
+    const auto alone = meshing::marching_cubes(im, 0.25);
+    for (const int threads : {2, 3, 50}) {
+      thread_count() = threads;
+      const auto together = meshing::marching_cubes(im, 0.25);
+      thread_count() = 1;
+      CHECK(together.surface.nodes == alone.surface.nodes);
+      CHECK(together.surface.cells == alone.surface.cells);
+      CHECK(together.surface.region == alone.surface.region);
+    }
   }
 
   TEST_CASE("meshing: marching cubes keeps to the mask") {

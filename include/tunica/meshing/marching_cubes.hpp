@@ -4,15 +4,23 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/parallel.hpp"
 #include "tunica/core/text.hpp"
 #include "tunica/image/image.hpp"
 #include "tunica/mesh/measures.hpp"
 #include "tunica/meshing/contour.hpp"
+#include "tunica/meshing/cut_numbers.hpp"
+#include "tunica/meshing/marching_caps.hpp"
 #include "tunica/meshing/marching_cubes_table.hpp"
+#include "tunica/meshing/sign_bits.hpp"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -34,237 +42,227 @@ namespace detail {
   return t < 1 - least_cut ? t : 1 - least_cut;
 }
 
-/// Sweep over the slices of the image: only two slices of edge numbers are in memory.
+/// The cells of a row that the contour passes: 64 at a time, those whose corners are not all alike.
+class CellRow {
+ public:
+  CellRow(const SignBits& bits, std::size_t j, std::size_t k)
+      : bits_(bits), row_{bits.row(j, k), bits.row(j + 1, k), bits.row(j, k + 1), bits.row(j + 1, k + 1)} {}
+
+  /// visit(i, case) for each.
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (std::size_t w = 0; w < bits_.words(); ++w) {
+      const std::array<std::uint64_t, 4> low{row_[0][w], row_[1][w], row_[2][w], row_[3][w]};
+      const std::uint64_t any = low[0] | low[1] | low[2] | low[3], all = low[0] & low[1] & low[2] & low[3];
+      if (any == 0 && (w + 1 == bits_.words() ||
+                       ((row_[0][w + 1] | row_[1][w + 1] | row_[2][w + 1] | row_[3][w + 1]) & 1U) == 0))
+        continue;
+      std::array<std::uint64_t, 4> high{};
+      for (std::size_t r = 0; r < 4; ++r) high[r] = bits_.next(row_[r], w);
+      std::uint64_t mixed =
+          ((any | high[0] | high[1] | high[2] | high[3]) & ~(all & high[0] & high[1] & high[2] & high[3])) &
+          bits_.with_next(w);
+      for (; mixed != 0; mixed &= mixed - 1) {
+        const auto n = static_cast<unsigned>(std::countr_zero(mixed));
+        unsigned signs = 0;  // corner (x, y, z) is bit x + 2 y + 4 z
+        for (unsigned r = 0; r < 4; ++r)
+          signs |= static_cast<unsigned>((low[r] >> n & 1U) | (high[r] >> n & 1U) << 1U) << 2 * r;
+        visit(word_bits * w + n, signs);
+      }
+    }
+  }
+
+ private:
+  const SignBits& bits_;
+  std::array<const std::uint64_t*, 4> row_;
+};
+
+/// All cut edges and triangles are counted first, so that each row knows where its own go: rows are filled in
+/// slabs of slices, on any number of threads, to the same bits.
 template <class T>
 class MarchingSweep {
  public:
   MarchingSweep(const image::Image<T>& image, std::span<const std::uint8_t> kept, double iso, Border border)
       : image_(image),
-        kept_(kept),
         iso_(iso),
-        capped_(border == Border::capped),
         nx_(image.axes[0].size()),
         ny_(image.axes[1].size()),
-        nz_(image.axes[2].size()) {
-    for (Slice& s : slice_) {
-      s.inside.assign(nx_ * ny_, 0);
-      for (auto& e : s.number) e.assign(nx_ * ny_, -1);
-    }
+        nz_(image.axes[2].size()),
+        bits_(image, kept, iso),
+        cuts_(bits_, ny_, nz_) {
+    if (cuts_.count() == 0) throw MeshError(nothing_crosses());
+    if (border == Border::capped) caps_.emplace(bits_, cuts_, MarchingCaps::Node{nx_, ny_, nz_});
   }
 
   [[nodiscard]] Contour run() {
-    load(slice_[0], 0);
-    for (std::size_t k = 0; k + 1 < nz_; ++k) {
-      load(slice_[1], k + 1);
-      columns(k);
-      for (std::size_t j = 0; j + 1 < ny_; ++j) cells(j, k);
-      if (capped_) cap_layer(k);
-      std::swap(slice_[0], slice_[1]);
+    Contour result;
+    mesh::Surface& s = result.surface;
+    const std::vector<Index> first = triangles_before();
+    const Index wall = first.back();
+    Index nodes = cuts_.count(), triangles = wall;
+    if (caps_) {
+      nodes += static_cast<Index>(caps_->nodes().size());
+      for (const auto& face : caps_->triangles()) triangles += static_cast<Index>(face.size() / 3);
     }
-    return finish();
+    s.nodes.resize(3, nodes), s.cells.resize(3, triangles);
+    s.region.assign(static_cast<std::size_t>(triangles), 0);
+    s.region_names.emplace_back("wall");
+    const std::ptrdiff_t slab = static_cast<std::ptrdiff_t>(nz_ - 2) / thread_count() + 1;  // slices
+    parallel_chunks(static_cast<std::ptrdiff_t>(nz_ - 1), slab,
+                    [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                      fill(static_cast<std::size_t>(begin), static_cast<std::size_t>(end), first, s);
+                    });
+    if (caps_) add_caps(wall, result);
+    return result;
   }
 
  private:
-  enum { x_edge, y_edge, z_edge, node };  // numbers of cut edges in +x, +y, +z and of border nodes, at a node
-
-  struct Slice {
-    std::size_t k = 0;
-    std::vector<std::uint8_t> inside;
-    std::array<std::vector<Index>, 4> number;
+  /// Numbers of the cut edges at the nodes of a slice, valid where an edge is cut.
+  struct SliceNumbers {
+    std::array<std::unique_ptr<Index[]>, 3> of;
+    explicit SliceNumbers(std::size_t n) {
+      for (auto& o : of) o = std::make_unique_for_overwrite<Index[]>(n);
+    }
   };
 
-  [[nodiscard]] double value(std::size_t i, std::size_t j, std::size_t k) const {
-    return static_cast<double>(image_.values[i + nx_ * (j + ny_ * k)]);
-  }
-
-  Index add(const Vec3& x) {
-    points_.insert(points_.end(), {x[0], x[1], x[2]});
-    return static_cast<Index>(points_.size() / 3 - 1);
-  }
-
-  [[nodiscard]] Vec3 position(std::size_t i, std::size_t j, std::size_t k) const {
-    return {image_.axes[0][i], image_.axes[1][j], image_.axes[2][k]};
-  }
-
-  /// The cut of the edge from node (i, j, k) in +axis.
-  Index cut(std::array<std::size_t, 3> at, std::size_t axis, bool first_inside) {
-    auto to = at;
-    ++to[axis];
-    const double p = value(at[0], at[1], at[2]), q = value(to[0], to[1], to[2]);
-    Vec3 x = position(at[0], at[1], at[2]);
-    const double lo = image_.axes[axis][at[axis]], hi = image_.axes[axis][to[axis]];
-    const auto a = static_cast<Eigen::Index>(axis);
-    x[a] =
-        first_inside ? lo + cut_fraction(p, q, iso_) * (hi - lo) : hi - cut_fraction(q, p, iso_) * (hi - lo);
-    ++cuts_;
-    return add(x);
-  }
-
-  void load(Slice& s, std::size_t k) {
-    s.k = k;
-    const std::size_t base = nx_ * ny_ * k;
-    for (std::size_t n = 0; n < nx_ * ny_; ++n)
-      s.inside[n] =
-          static_cast<double>(image_.values[base + n]) >= iso_ && (kept_.empty() || kept_[base + n] != 0);
-    for (std::size_t j = 0; j < ny_; ++j)
-      for (std::size_t i = 0; i < nx_; ++i) {
-        const std::size_t n = i + nx_ * j;
-        if (i + 1 < nx_ && s.inside[n] != s.inside[n + 1])
-          s.number[x_edge][n] = cut({i, j, k}, 0, s.inside[n] != 0);
-        if (j + 1 < ny_ && s.inside[n] != s.inside[n + nx_])
-          s.number[y_edge][n] = cut({i, j, k}, 1, s.inside[n] != 0);
-        s.number[node][n] = -1;
-      }
-  }
-
-  void columns(std::size_t k) {
-    for (std::size_t j = 0; j < ny_; ++j)
-      for (std::size_t i = 0; i < nx_; ++i) {
-        const std::size_t n = i + nx_ * j;
-        if (slice_[0].inside[n] != slice_[1].inside[n])
-          slice_[0].number[z_edge][n] = cut({i, j, k}, 2, slice_[0].inside[n] != 0);
-      }
-  }
-
-  /// Number of the vertex on an edge of the cell at (i, j): edge 4a + u + 2v, offsets along axes a+1 and a+2.
-  [[nodiscard]] Index on_edge(int edge, std::size_t n) const {
-    const int a = edge / 4, u = edge % 4 & 1, v = edge % 4 >> 1;
-    std::array<int, 3> offset{};
-    offset[static_cast<std::size_t>((a + 1) % 3)] = u, offset[static_cast<std::size_t>((a + 2) % 3)] = v;
-    return slice_[static_cast<std::size_t>(offset[2])].number[static_cast<std::size_t>(
-        a)][n + static_cast<std::size_t>(offset[0]) + nx_ * static_cast<std::size_t>(offset[1])];
-  }
-
-  void cells(std::size_t j, std::size_t) {
+  [[nodiscard]] std::vector<Index> triangles_before() const {
     const auto& table = marching_table();
-    const std::uint8_t *p = slice_[0].inside.data() + nx_ * j, *q = slice_[1].inside.data() + nx_ * j;
-    const auto column = [&](std::size_t i) {  // bits of the corners with x offset 0
-      return static_cast<unsigned>(p[i] | p[i + nx_] << 2 | q[i] << 4 | q[i + nx_] << 6);
-    };
-    unsigned left = column(0);
-    for (std::size_t i = 0; i + 1 < nx_; ++i) {
-      const unsigned right = column(i + 1), signs = left | right << 1;
-      left = right;
-      if (signs == 0 || signs == 255) continue;
-      const MarchingCase& c = table[signs];
-      for (std::size_t t = 0; t < static_cast<std::size_t>(c.count); ++t)
-        for (const std::int8_t e : c.triangle[t]) wall_.push_back(on_edge(e, i + nx_ * j));
+    const std::size_t rows = (ny_ - 1) * (nz_ - 1);
+    std::vector<Index> first(rows + 1, 0);
+    constexpr std::ptrdiff_t rows_a_chunk = 256;
+    parallel_chunks(
+        static_cast<std::ptrdiff_t>(rows), rows_a_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+          for (auto r = static_cast<std::size_t>(begin); r < static_cast<std::size_t>(end); ++r) {
+            Index count = 0;
+            CellRow(bits_, r % (ny_ - 1), r / (ny_ - 1)).for_each([&](std::size_t, unsigned signs) {
+              count += table[signs].count;
+            });
+            first[r + 1] = count;
+          }
+        });
+    for (std::size_t r = 0; r < rows; ++r) first[r + 1] += first[r];
+    return first;
+  }
+
+  /// The slabs of cells from slice begin to slice end; the flat cuts of slice begin are another's, but of 0.
+  void fill(std::size_t begin, std::size_t end, const std::vector<Index>& first, mesh::Surface& s) const {
+    SliceNumbers lower(nx_ * ny_), upper(nx_ * ny_);
+    double* nodes = s.nodes.data();
+    flat(begin, lower, begin == 0 ? nodes : nullptr);
+    for (std::size_t k = begin; k < end; ++k) {
+      flat(k + 1, upper, nodes);
+      upright(k, lower, nodes);
+      for (std::size_t j = 0; j + 1 < ny_; ++j) {
+        const std::size_t row = j + (ny_ - 1) * k;
+        if (first[row] < first[row + 1])
+          cells(j, k, lower, upper, s.cells.data() + 3 * std::ptrdiff_t{first[row]});
+      }
+      std::swap(lower, upper);
     }
   }
 
-  /// A corner of a face of the border: its slice and its place there.
-  struct Corner {
-    std::size_t slice, i, j;
-  };
-
-  Index border_node(const Corner& c) {
-    Slice& s = slice_[c.slice];
-    Index& number = s.number[node][c.i + nx_ * c.j];
-    if (number < 0) number = add(position(c.i, c.j, s.k));
-    return number;
-  }
-
-  [[nodiscard]] Index border_cut(const Corner& p, const Corner& q) const {
-    const int axis = p.i != q.i ? x_edge : p.j != q.j ? y_edge : z_edge;
-    const Corner& low = p.i < q.i || p.j < q.j || p.slice < q.slice ? p : q;
-    return slice_[low.slice].number[static_cast<std::size_t>(axis)][low.i + nx_ * low.j];
-  }
-
-  /// The inside of one face of the border, corners counter-clockwise from outside: marching squares by the
-  /// rule of the table, inside corners of an ambiguous face apart.
-  void cap(std::size_t face, const std::array<Corner, 4>& corner) {
-    const auto inside = [&](std::size_t n) {
-      const Corner& c = corner[n % 4];
-      return slice_[c.slice].inside[c.i + nx_ * c.j] != 0;
-    };
-    auto& out = caps_[face];
-    if (inside(0) && inside(1) && inside(2) && inside(3)) {
-      const std::array<Index, 4> v{border_node(corner[0]), border_node(corner[1]), border_node(corner[2]),
-                                   border_node(corner[3])};
-      out.insert(out.end(), {v[0], v[1], v[2], v[0], v[2], v[3]});
-      return;
-    }
-    for (std::size_t n = 0; n < 4; ++n) {
-      if (inside(n) || !inside(n + 1)) continue;
-      std::array<Index, 5> v{};  // cut, one to three nodes, cut
-      std::size_t size = 0, m = n + 1;
-      v[size++] = border_cut(corner[n], corner[(n + 1) % 4]);
-      for (; inside(m); ++m) v[size++] = border_node(corner[m % 4]);
-      v[size++] = border_cut(corner[(m - 1) % 4], corner[m % 4]);
-      const std::size_t apex = size / 2;  // a node that is collinear with no two of the others
-      for (std::size_t e = 0; e < size; ++e)
-        if (const std::size_t f = (e + 1) % size; e != apex && f != apex)
-          out.insert(out.end(), {v[apex], v[e], v[f]});
+  /// Numbers the cut edges within slice k, and writes where they are cut unless nodes is null.
+  void flat(std::size_t k, SliceNumbers& numbers, double* nodes) const {
+    for (std::size_t j = 0; j < ny_; ++j) {
+      auto [number, end] = cuts_.flat(j, k);
+      if (number == end) continue;
+      const T* v = image_.values.data() + nx_ * (j + ny_ * k);
+      for (std::size_t w = 0; w < bits_.words(); ++w) {
+        const CutWords cut = cuts_.words(w, j, k);
+        for (std::uint64_t some = cut.x | cut.y; some != 0; some &= some - 1) {
+          const auto n = static_cast<unsigned>(std::countr_zero(some));
+          const std::size_t i = word_bits * w + n, at = i + nx_ * j;
+          const bool inside = (bits_.row(j, k)[w] >> n & 1U) != 0;
+          if ((cut.x >> n & 1U) != 0) {
+            if (nodes) place(nodes, number, {i, j, k}, 0, inside, v[i], v[i + 1]);
+            numbers.of[0][at] = number++;
+          }
+          if ((cut.y >> n & 1U) != 0) {
+            if (nodes) place(nodes, number, {i, j, k}, 1, inside, v[i], v[i + nx_]);
+            numbers.of[1][at] = number++;
+          }
+        }
+      }
     }
   }
 
-  void cap_layer(std::size_t k) {
-    for (std::size_t j = 0; j + 1 < ny_; ++j) {
-      const std::size_t i = nx_ - 1;
-      cap(0, {{{0, 0, j}, {1, 0, j}, {1, 0, j + 1}, {0, 0, j + 1}}});
-      cap(1, {{{0, i, j}, {0, i, j + 1}, {1, i, j + 1}, {1, i, j}}});
-    }
-    for (std::size_t i = 0; i + 1 < nx_; ++i) {
-      const std::size_t j = ny_ - 1;
-      cap(2, {{{0, i, 0}, {0, i + 1, 0}, {1, i + 1, 0}, {1, i, 0}}});
-      cap(3, {{{0, i, j}, {1, i, j}, {1, i + 1, j}, {0, i + 1, j}}});
-    }
-    for (std::size_t s = 0; s < 2; ++s) {
-      if (k != (s == 0 ? 0 : nz_ - 2)) continue;
-      for (std::size_t j = 0; j + 1 < ny_; ++j)
-        for (std::size_t i = 0; i + 1 < nx_; ++i) {
-          std::array<Corner, 4> c{{{s, i, j}, {s, i, j + 1}, {s, i + 1, j + 1}, {s, i + 1, j}}};
-          if (s == 1) std::swap(c[1], c[3]);
-          cap(4 + s, c);
+  /// The same of the cut edges from slice k to the next.
+  void upright(std::size_t k, SliceNumbers& numbers, double* nodes) const {
+    for (std::size_t j = 0; j < ny_; ++j) {
+      auto [number, end] = cuts_.upright(j, k);
+      if (number == end) continue;
+      const T* v = image_.values.data() + nx_ * (j + ny_ * k);
+      for (std::size_t w = 0; w < bits_.words(); ++w)
+        for (std::uint64_t cut = cuts_.words(w, j, k).z; cut != 0; cut &= cut - 1) {
+          const auto n = static_cast<unsigned>(std::countr_zero(cut));
+          const std::size_t i = word_bits * w + n;
+          place(nodes, number, {i, j, k}, 2, (bits_.row(j, k)[w] >> n & 1U) != 0, v[i], v[i + nx_ * ny_]);
+          numbers.of[2][i + nx_ * j] = number++;
         }
     }
   }
 
-  [[nodiscard]] Contour finish() {
-    if (cuts_ == 0) throw MeshError(nothing_crosses());
-    Contour result;
+  /// The cut of the edge from node (i, j, k) in +axis, p and q the values at its ends.
+  void place(double* nodes, Index number, const std::array<std::size_t, 3>& at, std::size_t axis,
+             bool first_inside, T p, T q) const {
+    double* x = nodes + 3 * std::ptrdiff_t{number};
+    for (std::size_t a = 0; a < 3; ++a) x[a] = image_.axes[a][at[a]];
+    const double lo = x[axis], hi = image_.axes[axis][at[axis] + 1];
+    const auto from = static_cast<double>(p), to = static_cast<double>(q);
+    x[axis] = first_inside ? lo + cut_fraction(from, to, iso_) * (hi - lo)
+                           : hi - cut_fraction(to, from, iso_) * (hi - lo);
+  }
+
+  /// The triangles of the cells (., j, k), three numbers each.
+  void cells(std::size_t j, std::size_t k, const SliceNumbers& lower, const SliceNumbers& upper,
+             Index* triangles) const {
+    const auto& table = marching_table();
+    std::array<const Index*, 12> number;  // edge 4a + u + 2v of a cell has offsets u, v along axes a+1, a+2
+    for (std::size_t e = 0; e < 12; ++e) {
+      const std::size_t a = e / 4;
+      std::array<std::size_t, 3> offset{};
+      offset[(a + 1) % 3] = e % 4 & 1U, offset[(a + 2) % 3] = e % 4 >> 1U;
+      number[e] = (offset[2] == 0 ? lower : upper).of[a].get() + offset[0] + nx_ * (j + offset[1]);
+    }
+    CellRow(bits_, j, k).for_each([&](std::size_t i, unsigned signs) {
+      const MarchingCase& c = table[signs];
+      for (std::size_t t = 0; t < static_cast<std::size_t>(c.count); ++t)
+        for (const std::int8_t e : c.triangle[t]) *triangles++ = number[static_cast<std::size_t>(e)][i];
+    });
+  }
+
+  void add_caps(Index triangle, Contour& result) const {
     mesh::Surface& s = result.surface;
-    s.nodes = Eigen::Map<const Points<3>>(points_.data(), 3, static_cast<Eigen::Index>(points_.size() / 3));
-    std::vector<Index> cells = std::move(wall_);
-    s.region.assign(cells.size() / 3, 0);
-    s.region_names.emplace_back("wall");
+    Index node = cuts_.count();
+    for (const auto& at : caps_->nodes())
+      s.nodes.col(node++) = Vec3(image_.axes[0][at[0]], image_.axes[1][at[1]], image_.axes[2][at[2]]);
     for (std::size_t f = 0; f < 6; ++f) {
-      if (caps_[f].empty()) continue;
-      const auto region = static_cast<Index>(s.region_names.size());
+      const auto& corners = caps_->triangles()[f];
+      if (corners.empty()) continue;
+      BorderContact contact{.name = border_names[f], .region = static_cast<Index>(s.region_names.size())};
       s.region_names.emplace_back(border_names[f]);
-      s.region.insert(s.region.end(), caps_[f].size() / 3, region);
-      cells.insert(cells.end(), caps_[f].begin(), caps_[f].end());
-      result.borders.push_back({.name = border_names[f], .region = region});
-    }
-    s.cells = Eigen::Map<const Connectivity<3>>(cells.data(), 3, static_cast<Eigen::Index>(cells.size() / 3));
-    for (BorderContact& b : result.borders) {
-      for (Index t = 0; t < s.cell_count(); ++t) {
-        if (s.region_of(t) != b.region) continue;
-        const mesh::Triangle f = mesh::triangle(s, t);
-        b.area += f.area(), b.centre += f.area() * f.centroid();
+      for (std::size_t c = 0; c < corners.size(); c += 3, ++triangle) {
+        s.cells.col(triangle) << corners[c], corners[c + 1], corners[c + 2];
+        s.region[static_cast<std::size_t>(triangle)] = contact.region;
+        const mesh::Triangle t = mesh::triangle(s, triangle);
+        contact.area += t.area(), contact.centre += t.area() * t.centroid();
       }
-      b.centre /= b.area;
+      contact.centre /= contact.area;
+      result.borders.push_back(contact);
     }
-    return result;
   }
 
   [[nodiscard]] std::string nothing_crosses() const {
-    bool some_inside = false;
-    for (std::size_t n = 0; n < image_.values.size() && !some_inside; ++n)
-      some_inside = static_cast<double>(image_.values[n]) >= iso_ && (kept_.empty() || kept_[n] != 0);
     return "no edge of the grid crosses the iso-value " + seven_digits(iso_) + ": all of the image is " +
-           (some_inside ? "inside" : "outside");
+           (bits_.any() ? "inside" : "outside");
   }
 
   const image::Image<T>& image_;
-  std::span<const std::uint8_t> kept_;
   double iso_;
-  bool capped_;
-  std::size_t nx_, ny_, nz_, cuts_ = 0;
-  std::array<Slice, 2> slice_;
-  std::vector<double> points_;
-  std::vector<Index> wall_;
-  std::array<std::vector<Index>, 6> caps_;
+  std::size_t nx_, ny_, nz_;
+  SignBits bits_;
+  CutNumbers cuts_;
+  std::optional<MarchingCaps> caps_;
 };
 
 }  // namespace detail
@@ -272,7 +270,7 @@ class MarchingSweep {
 /// The surface of {value >= iso} on the voxels kept (one byte a voxel, 0 is dropped; empty keeps all).
 /// Vertices stand on the edges of the grid where the values of their nodes, linear along the edge, reach iso:
 /// O(h^2) from the true surface. Normals point outward, the volume is positive, in the unit of the image.
-/// MeshError when nothing crosses or an axis has a single sample.
+/// The same bits on any number of threads. MeshError when nothing crosses or an axis has a single sample.
 template <class T>
 [[nodiscard]] Contour marching_cubes(const image::Image<T>& image, std::span<const std::uint8_t> kept,
                                      double iso, const MarchingCubesOptions& options = {}) {
