@@ -22,8 +22,8 @@
 
 namespace tunica::meshing {
 
-/// What a value of type T is compared with instead of the iso-value: least is the least T that is not below it;
-/// none: there is no such value.
+/// What a value of type T is compared with instead of the iso-value: least is the least T that is not below
+/// it; none: there is no such value.
 template <class T>
 struct Reach {
   T least{};
