@@ -2,6 +2,7 @@
 // Walls of bifurcations: no inverted cell in the crotch, flat ends, interfaces near to each other.
 #include "support/contours.hpp"
 #include "support/shared.hpp"
+#include "support/stubs.hpp"
 #include "support/vessels.hpp"
 #include "tunica/image/components.hpp"
 #include "tunica/io/vtk_image.hpp"
@@ -153,6 +154,40 @@ TEST_SUITE("hard") {
     check_wall(lumen, rough);
     check_thickness(rough, 1.5);
     check_near(lumen, rough, 2);
+  }
+
+  TEST_CASE("meshing: walls of blind branches follow them or say where they do not") {
+    constexpr double edge = 2, tolerance = 0.1 * edge;
+    const auto wall_of = [&](const test::stubs::Branch& branch) {
+      const auto lumen = test::stubs::tube(branch, std::min(0.6, branch.radius));
+      auto result = meshing::vessel_wall(lumen, {.thickness = 1.0, .edge = edge});
+      const auto& d = result.report.distance;
+      const auto& e = result.report.extrusion;
+      MESSAGE("branch of radius " << branch.radius << " and length " << branch.length << " leaning by "
+                                  << branch.lean << ": " << result.report.grown
+                                  << " quadrilaterals grown, interfaces apart at most " << d.quads_max / edge
+                                  << " and " << d.wall_max / edge << " edges, scaled Jacobian least "
+                                  << e.quality.scaled_jacobian.least << ", thickness " << e.least_share
+                                  << " and " << e.least_between);
+      check_wall(lumen, result);
+      const auto topology = test::contours::topology(result.inner);
+      CHECK(topology.euler == 0);
+      CHECK(topology.wrong_edges + topology.wrong_vertices + topology.loose_vertices == 0);
+      CHECK(result.report.within == (d.quads_max <= tolerance && d.wall_max <= tolerance));
+      CHECK(farthest_from(result.inner, lumen) == doctest::Approx(d.wall_max).epsilon(0.05));
+      return result;
+    };
+    for (const double radius : {0.4, 0.7, 1.0, 1.5})
+      for (const double length : {1.5, 3.0}) {
+        const auto result = wall_of({.radius = radius, .length = length});
+        CHECK(result.report.within);
+        CHECK(result.report.extrusion.quality.scaled_jacobian.least >= 0.2);
+        CHECK(std::min(result.report.extrusion.least_share, result.report.extrusion.least_between) >= 0.5);
+      }
+    // The acute valley below a leaning branch leaves less room than a wall of that edge needs where the
+    // branch is thin: within the tolerance or not, the report must be right.
+    (void)wall_of({.radius = 0.7, .length = 1.5, .lean = 0.6});
+    (void)wall_of({.radius = 1.5, .length = 3.0, .lean = 0.6});
   }
 
   TEST_CASE("meshing: a thin spot or a flat cell outweighs a few far places in the choice of a sheet") {

@@ -25,6 +25,7 @@ struct QuadGrowOptions {
   double edge;       // mean edge of the sheet [length]
   double tolerance;  // distance that is aimed at [length]
   int rings = 12;    // at most
+  int failures = 3;  // places to give up before all others are
 };
 
 namespace detail {
@@ -100,7 +101,7 @@ int grow_quads(WallQuads& wall, const S& surface, const Rims& rims, const std::v
   double value = judge(wall);
   std::vector<Vec3> given_up;
   int rings = 0;
-  while (rings < options.rings) {
+  while (rings < options.rings && static_cast<int>(given_up.size()) < options.failures) {
     const auto missed = detail::most_missed(wall, targets, given_up, options.edge);
     if (!(value > 0) || !(missed.distance > options.tolerance)) break;
     QuadSettleOptions settle{.tolerance = aim * options.tolerance,
