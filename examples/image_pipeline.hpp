@@ -25,6 +25,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -117,17 +119,18 @@ namespace detail {
   return image;
 }
 
-[[nodiscard]] inline double largest_spacing(const image::Image<float>& image) {
-  double h = 0;
-  for (const auto& axis : image.axes)
-    for (std::size_t i = 1; i < axis.size(); ++i) h = std::max(h, axis[i] - axis[i - 1]);
-  return h;
-}
+/// Between neighbouring voxels along any axis.
+struct Spacing {
+  double smallest = std::numeric_limits<double>::infinity(), largest = 0;
+};
 
-[[nodiscard]] inline double smallest_spacing(const image::Image<float>& image) {
-  double h = largest_spacing(image);
+[[nodiscard]] inline Spacing spacing_of(const image::Image<float>& image) {
+  Spacing h;
   for (const auto& axis : image.axes)
-    for (std::size_t i = 1; i < axis.size(); ++i) h = std::min(h, axis[i] - axis[i - 1]);
+    for (std::size_t i = 1; i < axis.size(); ++i) {
+      h.smallest = std::min(h.smallest, axis[i] - axis[i - 1]);
+      h.largest = std::max(h.largest, axis[i] - axis[i - 1]);
+    }
   return h;
 }
 
@@ -184,12 +187,13 @@ inline constexpr int image_stages = 7;
   for (std::size_t f = 0; f < 6; ++f)
     if (region.touches[f]) segment["touches"].push(image::face_names[f]);
 
-  const double edge = o.edge.value_or(1.5 * detail::largest_spacing(image));
+  const auto spacing = detail::spacing_of(image);
+  const double edge = o.edge.value_or(1.5 * spacing.largest);
   Json borders, specks;
   s = stage("contour", [&] {
     auto made = detail::without_specks(detail::contour(image, region, o, borders), edge, specks, report);
     if (o.surface == Contourer::dual_contouring) {  // its faces lie outside of what is convex, and may cross
-      meshing::level(made, image, *o.iso, {.reach = 0.25 * detail::smallest_spacing(image)});
+      meshing::level(made, image, *o.iso, {.reach = 0.25 * spacing.smallest});
       if (const auto tangled = meshing::untangle(made); tangled.crossings_after > 0)
         warn(report, "the contour still crosses itself: " +
                          count_text(tangled.crossings_after, "pair", "pairs") + " of triangles");

@@ -12,7 +12,7 @@ namespace tunica {
 
 using Index = std::int32_t;  // of nodes, cells and voxels along one axis
 
-// Spacings and sizes from files lie between these, in any unit: products of five of them stay exact.
+// Spacings and sizes from files lie between these, in any unit: products of five neither overflow nor vanish.
 inline constexpr double least_length = 1e-30, most_length = 1e30;
 
 template <int Dim>
