@@ -36,6 +36,8 @@ class FrontConform {
 
  private:
   static constexpr int most_passes = 200;
+  static constexpr Index most_points =
+      6;  // an edge: beyond it two edges almost touch and drive each other on
 
   template <class I>
   [[nodiscard]] static std::size_t at(I i) {
@@ -65,7 +67,7 @@ class FrontConform {
     for (std::size_t i = 0; i < inner.size() + 1; ++i) {
       const Index u = node(i), v = node(i + 1);
       if (c_.tet_with(u, v, star_) >= 0) continue;
-      if (++steiner_ > 50 * static_cast<Index>(s_.edges.size()))
+      if (++steiner_ > most_points * static_cast<Index>(s_.edges.size()))
         throw RecoveryFailure{c_.point(u), "halving the edges of the surface does not end"};
       const Index p = c_.add_point(middle(u, v));
       try {

@@ -27,25 +27,26 @@ class FrontRelease {
   /// Takes all Steiner points off, those on faces first; one that cannot leave waits for its
   /// neighbours. RecoveryFailure when none of the rest can.
   void run() {
-    std::vector<Index> waiting;
-    for (const auto& [node, owner] : s_.owners())
-      if (owner.face >= 0) waiting.push_back(node);
-    for (const auto& [node, owner] : s_.owners())
-      if (owner.edge >= 0) waiting.push_back(node);
-    // Nearly flat tetrahedra pin a point to where it is: flips take them away.
-    if (!waiting.empty()) Improve::flip(c_, pinning);
-    while (!waiting.empty()) {
+    std::vector<Index> waiting = on_border();
+    // Nearly flat tetrahedra pin a point to where it is: flips take them away, and where these do not help,
+    // points that have left move on, or others come between.
+    if (!waiting.empty()) Improve::flip(c_, pinning[0]);
+    for (std::size_t stuck = 0; !waiting.empty();) {
       const std::size_t before = waiting.size();
       std::erase_if(waiting, [&](Index node) { return release(node); });
-      if (waiting.size() == before)
+      if (waiting.empty()) return;
+      if (waiting.size() < before)
+        Improve::flip(c_, pinning[0]);
+      else if (stuck < pinning.size())
+        Improve::loosen(c_, held(waiting), pinning[stuck++]);
+      else
         throw RecoveryFailure{c_.point(waiting[0]), "a point cannot leave the surface"};
-      if (!waiting.empty()) Improve::flip(c_, pinning);
     }
   }
 
  private:
   static constexpr int halvings = 45, most_corners = 200;
-  static constexpr double pinning = 1e-3;  // sine of a dihedral angle
+  static constexpr std::array<double, 3> pinning{1e-3, 1e-2, 1e-1};  // sine of a dihedral angle
 
   template <class I>
   [[nodiscard]] static std::size_t at(I i) {
@@ -57,6 +58,28 @@ class FrontRelease {
     Index face;
     std::vector<Index> nodes;
   };
+
+  /// Points that are no nodes of the surface but on it, those on its edges last.
+  [[nodiscard]] std::vector<Index> on_border() const {
+    std::vector<Index> nodes;
+    for (Index t = 0; t < c_.size(); ++t)
+      for (int f = 0; c_.alive(t) && f < 4; ++f)
+        if (c_.across(t, f) < 0)
+          for (const Index n : c_.face(t, f))
+            if (n >= s_.nodes) nodes.push_back(n);
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    std::stable_partition(nodes.begin(), nodes.end(), [&](Index n) { return s_.owner(n).edge < 0; });
+    return nodes;
+  }
+
+  /// Nodes of the surface and those that wait.
+  [[nodiscard]] std::vector<char> held(const std::vector<Index>& waiting) const {
+    std::vector<char> flags(c_.points.size(), 0);
+    std::fill_n(flags.begin(), s_.nodes, char{1});
+    for (const Index n : waiting) flags[at(n)] = 1;
+    return flags;
+  }
 
   bool release(Index node) {
     constexpr double good = 0.05, any = 0;

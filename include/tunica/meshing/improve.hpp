@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tunica::meshing {
@@ -46,6 +47,15 @@ class Improve {
     }
   }
 
+  /// All means on tetrahedra with a sine below the target; the nodes with held[n] = 1 stay.
+  static void loosen(TetComplex& complex, std::vector<char> held, double target) {
+    constexpr int most = 6;
+    Improve work(complex, {}, target);
+    work.m_.held = std::move(held);
+    for (int sweep = 0; sweep < most; ++sweep)
+      if (!work.sweep(sweep)) return;
+  }
+
  private:
   Improve(TetComplex& complex, std::span<const double> limit, double target)
       : m_(complex, static_cast<Index>(limit.size())),
@@ -60,6 +70,7 @@ class Improve {
   [[nodiscard]] bool hopeful(Index t) const {
     double bound = target_;
     int on_surface = 0;
+    if (limit_.empty()) return true;
     for (const Index n : m_.c.nodes(t))
       if (!m_.free(n)) bound = std::min(bound, limit_[at(n)]), ++on_surface;
     return on_surface < 2 || m_.quality(t) < bound;

@@ -17,7 +17,8 @@ namespace tunica::meshing {
 class ImproveMesh {
  public:
   TetComplex& c;
-  Index fixed;  // nodes below it lie on the surface and never move
+  Index fixed;             // nodes below it lie on the surface and never move
+  std::vector<char> held;  // 1: a node that does not move either; may be shorter than the nodes are many
 
   ImproveMesh(TetComplex& complex, Index fixed_nodes) : c(complex), fixed(fixed_nodes) {
     quality_.resize(static_cast<std::size_t>(c.size()), -1);
@@ -25,7 +26,10 @@ class ImproveMesh {
       if (c.alive(t)) update(t);
   }
 
-  [[nodiscard]] bool free(Index node) const { return node >= fixed; }
+  [[nodiscard]] bool free(Index node) const {
+    const auto n = static_cast<std::size_t>(node);
+    return node >= fixed && (n >= held.size() || held[n] == 0);
+  }
   [[nodiscard]] double quality(Index t) const { return quality_[static_cast<std::size_t>(t)]; }
   [[nodiscard]] double quality(const Quad& q) const {
     return sine_quality(c.point(q[0]), c.point(q[1]), c.point(q[2]), c.point(q[3]));

@@ -93,6 +93,37 @@ inline void measure_surface(const FrontSurface& s, const std::vector<Vec3>& node
   r.surface_min_dihedral = fold * 180 / std::numbers::pi;
 }
 
+/// Powers of two, one an axis, that make the edges of the surface about as long in each direction.
+/// Coordinates times them are exact and so are the signs of volumes: what is triangulated in the stretched
+/// space is valid in the other.
+[[nodiscard]] inline Vec3 stretch_of(const FrontSurface& s, const std::vector<Vec3>& nodes) {
+  Vec3 sum(0, 0, 0);
+  for (const auto& e : s.edges) {
+    const Vec3 d = vec::minus(nodes[static_cast<std::size_t>(e.a)], nodes[static_cast<std::size_t>(e.b)]);
+    for (int k = 0; k < 3; ++k) sum[k] += std::abs(d[k]);
+  }
+  const double most = std::max({sum[0], sum[1], sum[2]});
+  for (int k = 0; k < 3; ++k) sum[k] = std::exp2(std::round(std::log2(most / sum[k])));
+  return sum;
+}
+
+/// Ways to fill, in the order in which they are tried until one succeeds.
+struct FillWay {
+  FrontRecovery::Way way;
+  bool stretched;   // in a space where the edges of the surface are about as long in each direction
+  bool with_inner;  // points of the lattice; other ones for each way
+  int lattice;
+};
+using enum FrontRecovery::Way;
+inline constexpr std::array<FillWay, 8> fill_ways{{{forward, false, true, 0},
+                                                   {backward, false, true, 1},
+                                                   {forward, true, true, 0},
+                                                   {backward, true, true, 1},
+                                                   {halving, true, true, 2},
+                                                   {halving, true, false, 0},
+                                                   {halving, false, true, 2},
+                                                   {halving, false, false, 0}}};
+
 /// For each node of the surface the sine that a tetrahedron with an edge there can be asked for:
 /// that of the smallest angle of the triangles at the node.
 [[nodiscard]] inline std::vector<double> surface_limits(const FrontSurface& s,
@@ -107,7 +138,8 @@ inline void measure_surface(const FrontSurface& s, const std::vector<Vec3>& node
   return limit;
 }
 
-/// Checks everything that is promised and measures the rest: signs, border, volume, angles.
+/// Checks everything that is promised and measures the rest: signs, border, volume, angles. RecoveryFailure
+/// where a promise is broken.
 inline void verify(const TetComplex& c, const FrontSurface& s, const FillOptions& options, FillReport& r) {
   std::vector<char> found(s.triangles.size(), 0);
   constexpr Index block = 1024;  // sums of blocks: equal terms would round to the same side
@@ -118,13 +150,13 @@ inline void verify(const TetComplex& c, const FrontSurface& s, const FillOptions
     if (t % block == 0) volume += part, part = 0;
     if (!c.alive(t)) continue;
     const Quad& n = c.nodes(t);
-    if (!(c.orient(n) > 0)) throw MeshError("a tetrahedron is inverted at " + place(c.point(n[0])));
+    if (!(c.orient(n) > 0)) throw RecoveryFailure{c.point(n[0]), "a tetrahedron is inverted"};
     ++r.tetrahedra;
     for (int f = 0; f < 4; ++f) {
       if (c.across(t, f) >= 0) continue;
       const Index m = s.triangle_of(c.face(t, f));
       if (m < 0 || found[static_cast<std::size_t>(m)] != 0)
-        throw MeshError("a face of the border is no triangle of the surface, at " + place(c.point(n[0])));
+        throw RecoveryFailure{c.point(n[0]), "a face of the border is no triangle of the surface"};
       found[static_cast<std::size_t>(m)] = 1;
     }
     const std::array<Vec3, 4> p{c.point(n[0]), c.point(n[1]), c.point(n[2]), c.point(n[3])};
@@ -137,9 +169,9 @@ inline void verify(const TetComplex& c, const FrontSurface& s, const FillOptions
     ratio += mean_ratio(p[0], p[1], p[2], p[3]);
   }
   volume += part;
-  std::size_t lost = 0;
-  for (const char f : found) lost += f == 0;
-  if (lost > 0) throw MeshError(std::to_string(lost) + " triangles of the surface are not in the filling");
+  for (std::size_t f = 0; f < found.size(); ++f)
+    if (found[f] == 0)
+      throw RecoveryFailure{c.point(s.triangles[f][0]), "a triangle of the surface is not in the filling"};
   const Vec3 o = c.point(s.triangles[0][0]);
   for (const Triple& t : s.triangles) bounded += six_volumes(o, c.point(t[0]), c.point(t[1]), c.point(t[2]));
   r.volume = static_cast<double>(volume / 6);
@@ -212,29 +244,38 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
   const double poor = bound > flat ? std::min(flat, 0.5 * bound) : 0;
   const double target = std::sin(options.target_angle * std::numbers::pi / 180);
   FillResult best;
-  constexpr int attempts = 4;  // other inner points and another way each time; no inner points at last
-  for (int attempt = 0; attempt < attempts; ++attempt) {
-    if (best.report.tetrahedra > 0 && (best.report.min_dihedral >= poor || attempt + 1 == attempts)) break;
+  const Vec3 stretch = detail::stretch_of(front, nodes);
+  const bool even = stretch[0] == 1 && stretch[1] == 1 && stretch[2] == 1;
+  const auto scaled = [](std::vector<Vec3> points, const Vec3& by) {
+    for (Vec3& x : points)
+      for (int k = 0; k < 3; ++k) x[k] *= by[k];
+    return points;
+  };
+  for (const detail::FillWay& way : detail::fill_ways) {
+    const bool last = &way == &detail::fill_ways.back();
+    if (best.report.tetrahedra > 0 && (best.report.min_dihedral >= poor || last)) break;
+    if (way.stretched && even) continue;
     LatticeOptions lattice{.edge = options.lattice_edge, .clearance = options.clearance};
-    lattice.shift = vec::scaled(attempt, Vec3(0.37, 0.23, 0.11));
+    lattice.shift = vec::scaled(way.lattice, Vec3(0.37, 0.23, 0.11));
     std::vector<Vec3> inner;
-    if (attempt + 1 < attempts) inner = Lattice(distances, size, lattice).points();
+    if (way.with_inner) inner = Lattice(distances, size, lattice).points();
+    const Vec3 by = way.stretched ? stretch : Vec3(1, 1, 1);
     TetComplex complex;
     FillReport report = measured;
     try {
-      using Way = FrontRecovery::Way;
-      const Way way = attempt == 0 ? Way::forward : attempt == 1 ? Way::backward : Way::halving;
-      const RecoveryCounts counts = FrontRecovery::run(complex, front, nodes, inner, way);
+      const RecoveryCounts counts =
+          FrontRecovery::run(complex, front, scaled(nodes, by), scaled(std::move(inner), by), way.way);
       report.missing_edges = counts.missing_edges;
       report.missing_faces = counts.missing_faces;
       report.steiner = counts.steiner;
+      complex.points = scaled(std::move(complex.points), Vec3(1 / by[0], 1 / by[1], 1 / by[2]));
+      report.improvement = Improve::run(complex, detail::surface_limits(front, nodes), target);
+      detail::verify(complex, front, options, report);
     } catch (const RecoveryFailure& failure) {
-      if (attempt + 1 < attempts) continue;
+      if (!last) continue;
       throw MeshError(std::string("the surface could not be filled: ") + failure.what + ", at " +
                       place(failure.place));
     }
-    report.improvement = Improve::run(complex, detail::surface_limits(front, nodes), target);
-    detail::verify(complex, front, options, report);
     if (best.report.tetrahedra > 0 && !(report.min_dihedral > best.report.min_dihedral)) continue;
     best.mesh = detail::to_mesh(complex, surface);
     report.nodes = best.mesh.node_count();
