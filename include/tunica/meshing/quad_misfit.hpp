@@ -138,7 +138,10 @@ class QuadMisfit {
   static constexpr double target_weight = 4;
   using Distances = std::array<double, places>;
   [[nodiscard]] static double u(std::size_t i) { return static_cast<double>(i % (parts + 1)) / parts; }
-  [[nodiscard]] static double v(std::size_t i) { return static_cast<double>(i / (parts + 1)) / parts; }
+  [[nodiscard]] static double v(std::size_t i) {
+    const std::size_t row = i / (parts + 1);
+    return static_cast<double>(row) / parts;
+  }
   [[nodiscard]] static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] Index quads() const { return static_cast<Index>(wall_.cells.cols()); }
   [[nodiscard]] QuadFace face(Index q) const { return quad_face(wall_.nodes, wall_.cells, q); }
