@@ -61,15 +61,15 @@ class FrontRelease {
 
   /// Points that are no nodes of the surface but on it, those on its edges last.
   [[nodiscard]] std::vector<Index> on_border() const {
-    std::vector<Index> nodes;
+    std::vector<char> met(c_.points.size(), 0);
     for (Index t = 0; t < c_.size(); ++t)
       for (int f = 0; c_.alive(t) && f < 4; ++f)
         if (c_.across(t, f) < 0)
-          for (const Index n : c_.face(t, f))
-            if (n >= s_.nodes) nodes.push_back(n);
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    std::stable_partition(nodes.begin(), nodes.end(), [&](Index n) { return s_.owner(n).edge < 0; });
+          for (const Index n : c_.face(t, f)) met[at(n)] = 1;
+    std::vector<Index> nodes;
+    for (const bool of_edges : {false, true})
+      for (Index n = s_.nodes; n < static_cast<Index>(met.size()); ++n)
+        if (met[at(n)] != 0 && (s_.owner(n).edge >= 0) == of_edges) nodes.push_back(n);
     return nodes;
   }
 
