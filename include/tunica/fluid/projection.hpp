@@ -32,7 +32,7 @@ struct FixedMesh {
 
 struct ProjectionOptions {
   int passes = 1;                    // predictor-corrector passes a step; 2 or 3 for accuracy in time
-  double rotational = 1;             // chi of p -= chi mu div u*; 0: the standard form, order 0 at outlets
+  double rotational = 1;             // chi of p -= chi mu div u*; 0: the standard form, a larger error
   double momentum_tolerance = 1e-8;  // relative to the residual of the extrapolated velocity
   double pressure_tolerance = 1e-8;  // relative to the imbalance that the pressure has to remove
   int max_iterations = 1000;         // of each linear solver
