@@ -12,8 +12,9 @@ namespace tunica::fluid {
 ///   (grad q, grad p) - <q, dp/dn> - <dq/dn, p - c> + <sigma q, p - c>,   sigma = 1.2 |F| / V,
 /// c the prescribed increment. The form stands for D M^-1 D^T, the divergence of what an increment does to
 /// the velocity under a prescribed load; unlike an increment held at the nodes it leaves no row of continuity
-/// out. It is positive for sigma >= |F| / V, as 2 <p, dp/dn> <= V |dp/dn|^2 + |F|^2 / V mean(p)^2, and 1.2
-/// brings the largest ratio of the two to 1: a larger sigma moves the pressure at the patch too little.
+/// out. It is positive for sigma >= |F| / V, as 2 <p, dp/dn> <= V |dp/dn|^2 + |F|^2 / V mean(p)^2, where no
+/// tetrahedron has two faces on pressure patches (on flat patches that do not touch none has); and 1.2 brings
+/// the largest ratio of the two to 1: a larger sigma moves the pressure at the patch too little.
 class WeakFace {
  public:
   WeakFace(const Domain& domain, const Condition& c, Eigen::Index f) {
