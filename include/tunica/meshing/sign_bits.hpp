@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -47,10 +48,11 @@ struct Reach {
 
 namespace detail {
 
-constexpr std::size_t word_bits = 64;
+inline constexpr std::size_t word_bits = 64;
 
 /// Bit n is byte n, each of them 0 or 1.
 [[nodiscard]] inline std::uint64_t packed(const std::array<std::uint8_t, word_bits>& bytes) {
+  static_assert(std::endian::native == std::endian::little, "bytes are packed in the order of little-endian");
   std::uint64_t word = 0;
   for (std::size_t group = 0; group < 8; ++group) {
     std::uint64_t eight;
