@@ -31,7 +31,7 @@ struct Meshes {
 inline constexpr double longest_stub = 2;  // [-]
 
 /// Figures and warnings of the wall, in the unit of the image; MeshError where a cell is inverted.
-inline void tell_wall(const meshing::WallReport& wall, double edge, examples::Json& report) {
+inline void tell_wall(const meshing::WallReport& wall, examples::Json& report) {
   const auto& extrusion = wall.extrusion;
   const auto& apart = wall.distance;
   if (extrusion.quality.inverted > 0)
@@ -41,13 +41,17 @@ inline void tell_wall(const meshing::WallReport& wall, double edge, examples::Js
     warn(report["image_to_mesh"], "the wall gives way at " + std::to_string(extrusion.thinned) +
                                       " nodes, down to " + examples::short_text(100 * extrusion.least_share) +
                                       " % of its thickness");
-  if (apart.wall_max > 0.1 * edge)
-    warn(report["image_to_mesh"], "lumen and wall are up to " + examples::short_text(apart.wall_max) +
-                                      " apart, at " + place(apart.wall_place));
+  const double most_apart = std::max(apart.wall_max, apart.quads_max);
+  if (!wall.within)
+    warn(report["image_to_mesh"],
+         "lumen and wall are up to " + examples::short_text(most_apart) + " apart, at " +
+             place(apart.wall_max < apart.quads_max ? apart.quads_place : apart.wall_place));
   examples::Json& j = report["wall"];
   j["smallest_scaled_jacobian"] = extrusion.quality.scaled_jacobian.least;
   j["least_share_of_thickness"] = extrusion.least_share;
-  j["interfaces_apart"] = std::max(apart.wall_max, apart.quads_max);
+  j["least_share_between_nodes"] = extrusion.least_between;
+  j["interfaces_apart"] = most_apart;
+  j["grown_quadrilaterals"] = wall.grown;
 }
 
 [[nodiscard]] inline Meshes meshes(const Options& o, examples::Stages& stage, examples::Json& report) {
@@ -57,7 +61,7 @@ inline void tell_wall(const meshing::WallReport& wall, double edge, examples::Js
         surface, {.thickness = thickness / o.unit, .edge = o.wall_edge(), .layers = o.layers()});
   });
   report["wall"]["hexahedra"] = wall.wall.cell_count(), report["wall"]["nodes"] = wall.wall.node_count();
-  tell_wall(wall.report, o.wall_edge(), report);
+  tell_wall(wall.report, report);
   tets.nodes *= o.unit;
   wall.wall.nodes *= o.unit;
   return {std::move(tets), std::move(wall.wall)};
