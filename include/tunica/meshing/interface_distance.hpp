@@ -4,6 +4,7 @@
 
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
+#include "tunica/meshing/quad_face.hpp"
 #include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/surface_foot.hpp"
 
@@ -53,12 +54,12 @@ template <FootSurface S>
   fine.cells.resize(4, quads.cells.cols() * parts * parts);
   Index node = 0, cell = 0;
   for (Index q = 0; q < quads.cell_count(); ++q) {
-    const auto x = [&](int k) { return vec::column(quads.nodes, quads.cells(k, q)); };
+    const QuadFace face = quad_face(quads.nodes, quads.cells, q);
     const Index first = node;
     for (int j = 0; j <= parts; ++j)
       for (int i = 0; i <= parts; ++i) {
         const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
-        const Vec3 p = vec::between(vec::between(x(0), x(1), u), vec::between(x(3), x(2), u), v);
+        const Vec3 p = face.at(u, v);
         vec::set_column(fine.nodes, node++, p);
         const double away = finder.distance(p);
         d.quads_rms += away * away;
