@@ -14,7 +14,6 @@
 #include "tunica/meshing/marching_cubes_table.hpp"
 #include "tunica/meshing/sign_bits.hpp"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>

@@ -15,7 +15,6 @@
 #include "tunica/meshing/wall_quads.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>

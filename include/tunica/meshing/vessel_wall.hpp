@@ -45,8 +45,8 @@ struct WallReport {
   InterfaceDistance distance;  // of the quadrilaterals and the lumen's wall, with the places of the largest
   bool within = false;         // the tolerance, everywhere
   int refinements = 0;         // rounds in which the grid was drawn together
-  Index grown = 0;             // quadrilaterals by which blind branches were grown
   std::size_t lenses = 0;      // places where it was
+  Index grown = 0;             // quadrilaterals by which blind branches were grown
   QuadSmoothReport smoothing;
   ExtrudeReport extrusion;
   Index dropped = 0;  // quadrilaterals that hung on the sheet by a corner
