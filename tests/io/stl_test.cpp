@@ -146,6 +146,18 @@ TEST_SUITE("unit") {
     auto open = s;
     open.cells.conservativeResize(3, 7);
     CHECK(has(refusal(bytes_of(open)), "the surface is open: 1 boundary loop: 3 edges around ("));
+    auto holes = s;  // two that touch at the corner (1, 0, 0)
+    Index kept = 0, at_corner = 0;
+    for (Index t = 0; t < 8; ++t) {
+      const Vec3 middle = mesh::triangle(s, t).centroid();
+      if (middle[0] > 0 && middle[1] * middle[2] > 0)
+        ++at_corner;
+      else
+        holes.cells.col(kept++) = s.cells.col(t);
+    }
+    REQUIRE(at_corner == 2);
+    holes.cells.conservativeResize(3, kept);
+    CHECK(has(refusal(bytes_of(holes)), "is shared by 1 facet: the surface is open around holes that touch"));
     auto turned = s;
     turned.cells.col(2) << 3, 1, 4;
     CHECK(has(refusal(bytes_of(turned)), "is shared by 2 facets: which turn opposite ways (3 such edges)"));

@@ -40,7 +40,7 @@ namespace detail {
       facets += (p == from && q == to) || (p == to && q == from);
     }
     return "the edge from " + place(s.nodes.col(from)) + " to " + place(s.nodes.col(to)) + " is shared by " +
-           std::to_string(facets) + " facets";
+           std::to_string(facets) + (facets == 1 ? " facet" : " facets");
   }
   return "no edge";
 }
@@ -89,6 +89,10 @@ namespace detail {
         name, detail::edge_text(s, mesh::misoriented_edge),
         "which turn opposite ways (" + std::to_string(t.misoriented_edges) + " such edges" + open + ")");
   if (t.open_edges > 0) {
+    if (t.loops.empty())
+      throw InputError(name, detail::edge_text(s, mesh::open_edge),
+                       "the surface is open around holes that touch each other (" +
+                           std::to_string(t.open_edges) + " such edges); cap it to make a volume");
     std::string holes;
     for (const auto& loop : t.loops)
       holes += (holes.empty() ? "" : ", ") + std::to_string(loop.nodes.size()) + " edges around " +
