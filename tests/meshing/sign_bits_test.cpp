@@ -74,10 +74,10 @@ TEST_SUITE("unit") {
     }
     // What is no number is outside; the ends of the types are where they belong.
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    check_bits(
-        box<float>(66, 2, 2, [&](std::size_t i) { return i % 3 == 0   ? nan
-                                                         : i % 3 == 1 ? inf
-                                                                      : -inf; }), 1);
+    const auto special = box<float>(66, 2, 2, [&](std::size_t i) {
+      return i % 3 == 0 ? nan : i % 3 == 1 ? inf : -inf;
+    });
+    for (const float iso : {1.0F, inf, -inf, std::numeric_limits<float>::lowest()}) check_bits(special, iso);
     for (const double iso : {-32768.0, -32768.5, 32767.0, 32767.5, 32768.0})
       check_bits(box<short>(66, 2, 2, [&](std::size_t i) { return i % 2 == 0 ? -32768 : 32767; }), iso);
     // 2^53 + 1 rounds to 2^53 as a double: what counts is the double.

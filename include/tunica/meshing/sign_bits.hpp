@@ -36,7 +36,7 @@ struct Reach {
       least = Limits::has_infinity ? Limits::infinity() : Limits::max();
       none = std::isnan(iso) || !Limits::has_infinity;
     } else if (iso <= static_cast<double>(Limits::lowest())) {
-      least = Limits::lowest();
+      least = std::isinf(iso) && Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
     } else if constexpr (std::is_integral_v<T>) {
       least = static_cast<T>(std::ceil(iso));
     } else {
