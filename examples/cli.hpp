@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <csignal>
 #include <cstddef>
 #include <cstdio>
 #include <exception>
@@ -224,6 +225,7 @@ template <class Body>
       std::fputs(cli.help().c_str(), stdout);
       return 0;
     }
+    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of its size is an error like a full disc
     thread_count() = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     std::forward<Body>(body)();
     return 0;

@@ -101,4 +101,15 @@ TEST_SUITE("job") {
     refused("s00_control_closed.stl", " --egde 2", 2, "did you mean --edge?");
     refused("s00_control_closed.stl", " another.stl", 2, "unexpected argument \"another.stl\"");
   }
+
+  TEST_CASE("surface_to_mesh: a limit on the size of files is an error and leaves no file") {
+    const auto control = shared("data/bad/s00_control_closed.stl");
+    if (!control || program("surface_to_mesh").empty()) return;
+    const Folder folder;
+    const auto o = run(folder, "(ulimit -f 20; exec " + program("surface_to_mesh") + " \"" +
+                                   control->string() + "\" -o a.vtu)");
+    CHECK(o.status == 1);
+    CHECK(has(o.err, "error: a.vtu: cannot be written: "));
+    CHECK(folder.files().empty());
+  }
 }
