@@ -21,9 +21,11 @@
 #include "tunica/meshing/box.hpp"
 
 #include <doctest/doctest.h>
+#include <Eigen/Eigenvalues>
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 using namespace tunica;
@@ -174,6 +176,42 @@ TEST_SUITE("unit") {
       A.apply(p, y), A.apply(q, z);
       CHECK(q.dot(y) == doctest::Approx(p.dot(z)));
       CHECK(p.dot(y) > 0);
+    }
+  }
+
+  TEST_CASE("fluid: the weak form is positive on any tetrahedron however many of its faces count") {
+    test::Noise next(7);
+    for (int trial = 0; trial < 200; ++trial) {
+      mesh::TetMesh mesh;
+      mesh.nodes.resize(3, 4), mesh.cells.resize(4, 1);
+      for (Eigen::Index k = 0; k < 12; ++k) mesh.nodes.data()[k] = next();
+      const Vec3 a = mesh.nodes.col(0), b = mesh.nodes.col(1), c = mesh.nodes.col(2), d = mesh.nodes.col(3);
+      mesh.cells.col(0) << 0, 1, 2, 3;
+      if ((b - a).cross(c - a).dot(d - a) < 0) mesh.cells.col(0) << 0, 2, 1, 3;
+      for (int f = 0; f < 4; ++f) {
+        mesh::Patch<mesh::Tri3> side{.name = std::to_string(f), .faces = Connectivity<3>(3, 1)};
+        for (int k = 0; k < 3; ++k) side.faces(k, 0) = mesh.cells((f + (f % 2 == 0 ? 1 + k : 3 - k)) % 4, 0);
+        mesh.patches.push_back(side);
+      }
+      fluid::Conditions conditions(mesh);
+      fem::P1Tets tets;
+      REQUIRE(tets.update(mesh.nodes, mesh.cells));
+      const fluid::Pattern pattern(mesh);
+      const Eigen::VectorXd inverse_mass = Eigen::VectorXd::Constant(4, 4 / tets[0].volume);
+      for (int patches = 1; patches <= 4; ++patches) {
+        conditions[std::to_string(patches - 1)].kind = fluid::Kind::pressure;
+        conditions.flag();
+        fluid::PressureOperator A(pattern);
+        A.assemble({pattern, mesh.cells, tets, mesh.nodes, inverse_mass, conditions}, {0.0}, 1);
+        Eigen::Matrix4d dense;
+        Eigen::VectorXd column;
+        for (Index i = 0; i < 4; ++i) {
+          A.apply(Eigen::VectorXd(Eigen::VectorXd::Unit(4, i)), column);
+          dense.col(i) = column;
+        }
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(dense, Eigen::EigenvaluesOnly);
+        CHECK(eigen.eigenvalues().minCoeff() > 0);
+      }
     }
   }
 

@@ -36,8 +36,9 @@ enum class Kind { wall, velocity, pressure };
 struct Condition {
   std::string name;
   Connectivity<3> faces;
-  std::vector<Index> nodes;  // ascending
-  std::vector<Index> cells;  // the tetrahedron behind each face
+  std::vector<Index> nodes;   // ascending
+  std::vector<Index> cells;   // the tetrahedron behind each face
+  std::vector<int> loaded{};  // of a pressure: how many faces of that tetrahedron have one
   Kind kind = Kind::wall;
   BoundaryFunction<Vec3> velocity{};  // [m/s]
   BoundaryFunction<double> scalar{};  // a pressure [Pa], or the waveform of a profile
@@ -84,15 +85,25 @@ class Conditions {
   }
   [[nodiscard]] const std::vector<Condition>& list() const { return list_; }
 
-  /// Marks the nodes again after a condition was changed.
+  /// Marks nodes and cells again after a condition was changed.
   void flag() {
     velocity_.assign(node_count_, 0);
-    any_pressure_ = false;
+    std::vector<Index> behind;
     for (const auto& c : list_) {
       if (c.kind == Kind::pressure)
-        any_pressure_ = true;
+        behind.insert(behind.end(), c.cells.begin(), c.cells.end());
       else
         for (const Index n : c.nodes) velocity_[static_cast<std::size_t>(n)] = 1;
+    }
+    any_pressure_ = !behind.empty();
+    std::sort(behind.begin(), behind.end());
+    for (auto& c : list_) {
+      c.loaded.clear();
+      if (c.kind != Kind::pressure) continue;
+      for (const Index e : c.cells) {
+        const auto [first, last] = std::equal_range(behind.begin(), behind.end(), e);
+        c.loaded.push_back(static_cast<int>(last - first));
+      }
     }
   }
 

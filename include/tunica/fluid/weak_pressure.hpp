@@ -9,12 +9,12 @@
 namespace tunica::fluid {
 
 /// The terms of one face |F| of a pressure patch in
-///   (grad q, grad p) - <q, dp/dn> - <dq/dn, p - c> + <sigma q, p - c>,   sigma = 1.2 |F| / V,
-/// c the prescribed increment. The form stands for D M^-1 D^T, the divergence of what an increment does to
-/// the velocity under a prescribed load; unlike an increment held at the nodes it leaves no row of continuity
-/// out. It is positive for sigma >= |F| / V, as 2 <p, dp/dn> <= V |dp/dn|^2 + |F|^2 / V mean(p)^2, where no
-/// tetrahedron has two faces on pressure patches (on flat patches that do not touch none has); and 1.2 brings
-/// the largest ratio of the two to 1: a larger sigma moves the pressure at the patch too little.
+///   (grad q, grad p) - <q, dp/dn> - <dq/dn, p - c> + <sigma q, p - c>,   sigma = 1.2 m |F| / V,
+/// c the prescribed increment, m the number of such faces of its tetrahedron. The form stands for D M^-1 D^T,
+/// the divergence of what an increment does to the velocity under a prescribed load; unlike an increment held
+/// at the nodes it leaves no row of continuity out. It is positive for sigma >= m |F| / V, as 2 sum <p,
+/// dp/dn> <= V |grad p|^2 + m / V sum |F|^2 mean(p)^2 over the m faces; and 1.2 brings the largest ratio of
+/// the two to 1: a larger sigma moves the pressure at the patch too little.
 class WeakFace {
  public:
   WeakFace(const Domain& domain, const Condition& c, Eigen::Index f) {
@@ -27,7 +27,7 @@ class WeakFace {
       on_[a] = node_[a] == c.faces(0, f) || node_[a] == c.faces(1, f) || node_[a] == c.faces(2, f);
     }
     area_ = length(n);
-    sigma_ = 1.2 * area_ / tet.volume;
+    sigma_ = 1.2 * c.loaded[static_cast<std::size_t>(f)] * area_ / tet.volume;
   }
 
   [[nodiscard]] Index node(int i) const { return node_[i]; }
