@@ -250,7 +250,7 @@ inline constexpr int image_stages = 7;
     if (o.fill == Fill::none) return;
     auto filled = meshing::tetrahedra(s);
     out.tets = std::move(filled.mesh);
-    report["fill"] = fill_figures(filled.report, out.tets);
+    tell_tetrahedra(filled.report, out.tets, report);
   });
   return out;
 }

@@ -83,9 +83,10 @@ inline void require_countable(const mesh::Surface& s, double edge) {
                     " tetrahedra, more than " + short_text(most));
 }
 
-[[nodiscard]] inline Json fill_figures(const meshing::FillReport& r, const mesh::TetMesh& tets) {
+/// Figures of the tetrahedra; a warning where some are flat to rounding: a solver would refuse them.
+inline void tell_tetrahedra(const meshing::FillReport& r, const mesh::TetMesh& tets, Json& report) {
   const auto q = mesh::quality(tets);
-  Json j;
+  Json& j = report["fill"];
   j["nodes"] = r.nodes, j["tetrahedra"] = r.tetrahedra, j["inverted"] = q.inverted;
   j["volume"] = r.volume, j["volume_error"] = r.volume_error;
   j["smallest_dihedral_degrees"] = r.min_dihedral, j["largest_dihedral_degrees"] = r.max_dihedral;
@@ -93,7 +94,11 @@ inline void require_countable(const mesh::Surface& s, double edge) {
   j["mean_ratio"] = r.mean_ratio, j["worst_place"] = q.worst_place;
   j["surface_smallest_angle_degrees"] = r.surface_min_angle;
   j["surface_smallest_dihedral_degrees"] = r.surface_min_dihedral;
-  return j;
+  if (q.inverted > 0)
+    warn(report, count_text(static_cast<std::size_t>(q.inverted), "tetrahedron", "tetrahedra") +
+                     " flat to rounding, the flattest at " + place(q.worst_place) +
+                     "; the smallest angle of the surface is " + short_text(r.surface_min_angle) +
+                     " degrees");
 }
 
 [[nodiscard]] inline Json remesh_figures(const meshing::RemeshReport& r) {

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     });
     report["surface"] = surface_figures(surface, mesh::topology(surface));
     const auto filled = stage("fill", [&] { return meshing::tetrahedra(surface); });
-    report["fill"] = fill_figures(filled.report, filled.mesh);
+    tell_tetrahedra(filled.report, filled.mesh, report);
     OutputFiles files;
     stage("write", [&] {
       files.write(volume, [&](const auto& path) { io::write_vtu(path, filled.mesh); });
