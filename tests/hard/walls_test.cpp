@@ -104,8 +104,23 @@ void check_thickness(const meshing::WallResult& result, double thickness) {
   CHECK(least >= 0.5);
 }
 
+/// Shortest side of the quadrilaterals.
+double shortest_side(const mesh::QuadSurface& quads) {
+  double least = 1e9;
+  for (Index q = 0; q < quads.cell_count(); ++q)
+    for (int k = 0; k < 4; ++k)
+      least = std::min(
+          least, (quads.nodes.col(quads.cells(k, q)) - quads.nodes.col(quads.cells((k + 1) % 4, q))).norm());
+  return least;
+}
+
 /// The two interfaces within a tenth of the edge, everywhere, and the report says so.
 void check_near(const mesh::Surface& lumen, const meshing::WallResult& result, double edge) {
+  // a side that has shrunk to nothing makes a cell that turns over when the wall bends
+  const double shortest = shortest_side(result.inner) / edge;
+  MESSAGE("shortest side of the inner faces " << shortest << " edges");
+  CHECK(shortest > 0.1);
+  CHECK(result.report.shortest_side == doctest::Approx(shortest));
   CHECK(result.report.extrusion.quality.scaled_jacobian.least >= 0.2);
   CHECK(result.report.within);
   CHECK(result.report.distance.quads_max < 0.1 * edge);
@@ -190,10 +205,13 @@ TEST_SUITE("hard") {
     (void)wall_of({.radius = 1.5, .length = 3.0, .lean = 0.6});
   }
 
-  TEST_CASE("meshing: a thin spot or a flat cell outweighs a few far places in the choice of a sheet") {
+  TEST_CASE(
+      "meshing: a thin spot or a flat or pinched cell outweighs a few far places in the choice of a sheet") {
     meshing::WallReport sound;
     sound.extrusion.quality.scaled_jacobian.least = 0.3;
-    auto thin = sound, flat = sound, inverted = sound;
+    sound.shortest_side = 0.3;
+    auto thin = sound, flat = sound, inverted = sound, pinched = sound;
+    pinched.shortest_side = 0.01;
     thin.extrusion.least_between = 0.35;
     flat.extrusion.quality.scaled_jacobian.least = 0.1;
     inverted.extrusion.quality.inverted = 1;
@@ -203,6 +221,7 @@ TEST_SUITE("hard") {
     };
     CHECK(badness(sound, false) == 0);
     CHECK(badness(sound, true) < badness(thin, false));
+    CHECK(badness(sound, true) < badness(pinched, false));
     CHECK(badness(thin, false) < badness(flat, false));
     CHECK(badness(flat, true) < badness(inverted, false));
   }

@@ -104,6 +104,7 @@ int grow_quads(WallQuads& wall, const S& surface, const Rims& rims, const std::v
     const auto missed = detail::most_missed(wall, targets, given_up, options.edge);
     if (!(value > 0) || !(missed.distance > options.tolerance)) break;
     QuadSettleOptions settle{.tolerance = aim * options.tolerance,
+                             .shortest = short_side * options.edge,
                              .rounds = first_rounds,
                              .centre = missed.place,
                              .radius = 2 * options.edge + missed.distance};

@@ -21,10 +21,14 @@
 
 namespace tunica::meshing {
 
+/// Of the mean edge: shorter sides make cells whose corners turn over when the wall bends.
+inline constexpr double short_side = 0.15;
+
 struct QuadSettleOptions {
   double tolerance;                                         // distance from which on places count [length]
   double sound = 0.45;                                      // column from which on it does not count
   double hold = 0.35;                                       // column below which no move may make it worse
+  double shortest = 0;                                      // side from which on it does not count [length]
   int rounds = 40;                                          // over the nodes, at most
   Vec3 centre = Vec3::Zero();                               // only nodes this near to it move, and only
   double radius = std::numeric_limits<double>::infinity();  // what is as near is looked at [length]
@@ -57,15 +61,16 @@ class QuadSettler {
     misfit_.mark(amiss);
     bool any = false;
     for (Index n = 0; n < count(); ++n)
-      if (amiss[at(n)] != 0 && reach_[at(n)] != 0 && step_[at(n)] >= last_step) any = settle(n) || any;
+      if ((amiss[at(n)] != 0 || sides(n, node(n)) > 0) && reach_[at(n)] != 0 && step_[at(n)] >= last_step)
+        any = settle(n) || any;
     return any;
   }
 
-  /// What is amiss: distances, and columns that are not sound.
+  /// What is amiss: distances, columns that are not sound, and short sides.
   [[nodiscard]] double amiss() const {
     double sum = misfit_.sum();
     for (Index n = 0; n < count(); ++n)
-      if (reach_[at(n)] != 0) sum += shape(column(n));
+      if (reach_[at(n)] != 0) sum += shape(column(n)) + sides(n, node(n));
     return sum;
   }
 
@@ -118,6 +123,16 @@ class QuadSettler {
     return sum;
   }
 
+  /// Of the sides from a place for node n to its neighbours that are too short.
+  [[nodiscard]] double sides(Index n, const Vec3& x) const {
+    double sum = 0;
+    for (const Index m : neighbours_[n]) {
+      const double lack = options_.shortest - vec::distance(x, node(m));
+      if (lack > 0) sum += shape_weight * lack * lack / (options_.shortest * options_.shortest);
+    }
+    return sum;
+  }
+
   /// Sum of the area vectors of the faces, normalised.
   [[nodiscard]] Vec3 normal(const std::vector<Index>& faces) const {
     Vec3 sum = Vec3::Zero();
@@ -134,7 +149,7 @@ class QuadSettler {
     const auto around = misfit_.around(n);
     const Feet below = feet(around.faces);
     const double unbounded = std::numeric_limits<double>::infinity(),
-                 before = shape(below) + misfit_.sum(around, 0, unbounded);
+                 before = shape(below) + sides(n, node(n)) + misfit_.sum(around, 0, unbounded);
     if (!(before > 0)) return false;
     const Vec3 start = node(n);
     Vec3 best_x = start, mean = Vec3::Zero();
@@ -142,7 +157,7 @@ class QuadSettler {
     bool moved = false;
     const auto attempt = [&](const Vec3& x) {
       vec::set_column(wall_.nodes, n, x);
-      double e = shape(below);
+      double e = shape(below) + sides(n, x);
       if (e < best) e += misfit_.sum(around, vec::distance(x, start), best - e);
       if (!(e < best)) return false;
       best = e, best_x = x;
@@ -151,7 +166,7 @@ class QuadSettler {
     const double share = 1 / static_cast<double>(neighbours_[n].size());
     for (const Index m : neighbours_[n]) {
       mean = vec::along(mean, share, node(m));
-      h = std::min(h, step_[at(n)] * vec::distance(start, node(m)));
+      h = std::min(h, step_[at(n)] * std::max(vec::distance(start, node(m)), options_.shortest));
     }
     if (rim_[at(n)] != nullptr) {
       const double from = *along_[at(n)];

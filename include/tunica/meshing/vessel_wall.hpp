@@ -5,6 +5,7 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/core/expect.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/extrude.hpp"
 #include "tunica/meshing/interface_distance.hpp"
@@ -47,6 +48,7 @@ struct WallReport {
   int refinements = 0;         // rounds in which the grid was drawn together
   std::size_t lenses = 0;      // places where it was
   Index grown = 0;             // quadrilaterals by which blind branches were grown
+  double shortest_side = 0;    // of the quadrilaterals [edge]
   QuadSmoothReport smoothing;
   ExtrudeReport extrusion;
   Index dropped = 0;  // quadrilaterals that hung on the sheet by a corner
@@ -64,11 +66,12 @@ namespace detail {
 
 /// Lower is better: no inverted cell before all; then the sum of what lies beyond the tolerance, to which a
 /// scaled Jacobian of 0.1 below the sound one adds a hundred places that are twice as far off as they may be,
-/// and a share of the thickness of 0.1 below half adds fifty.
+/// and a share of the thickness of 0.1 below half, or a side of 0.1 of the edge below a tenth, adds fifty.
 [[nodiscard]] inline double wall_badness(const WallReport& report, const std::vector<FarPlace>& far,
                                          double tolerance) {
-  constexpr double sound = 0.2;  // scaled Jacobian
-  constexpr double thick = 0.5;  // share of the thickness
+  constexpr double sound = 0.2;       // scaled Jacobian
+  constexpr double thick = 0.5;       // share of the thickness
+  constexpr double least_side = 0.1;  // [edge]
   const auto& quality = report.extrusion.quality;
   double sum = 0;
   for (const FarPlace& place : far) sum += place.distance / tolerance - 1;
@@ -76,6 +79,7 @@ namespace detail {
   if (!(quality.scaled_jacobian.least >= sound)) sum += 1e3 * (sound - quality.scaled_jacobian.least);
   const double share = std::min(report.extrusion.least_share, report.extrusion.least_between);
   if (!(share >= thick)) sum += 500 * (thick - share);
+  if (!(report.shortest_side >= least_side)) sum += 500 * (least_side - report.shortest_side);
   return sum;
 }
 
@@ -83,6 +87,15 @@ namespace detail {
 [[nodiscard]] inline double wall_worth(const WallReport& report) {
   const auto& e = report.extrusion;
   return std::min(e.quality.scaled_jacobian.least, 0.3) + 0.3 * std::min(e.least_share, e.least_between);
+}
+
+[[nodiscard]] inline double shortest_side(const mesh::QuadSurface& quads) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Index q = 0; q < quads.cell_count(); ++q)
+    for (int k = 0; k < 4; ++k)
+      least = std::min(least, vec::distance(vec::column(quads.nodes, quads.cells(k, q)),
+                                            vec::column(quads.nodes, quads.cells((k + 1) % 4, q))));
+  return least;
 }
 
 /// How hard to try to grow branches.
@@ -125,6 +138,7 @@ class WallTrials {
     sound_ = false;
     result.report.distance = interface_distance(result.inner, targets_, finder_, tolerance(), &far_);
     result.report.within = far_.empty();
+    result.report.shortest_side = shortest_side(result.inner) / options_.edge;
     std::vector<SheetRim> ends;
     for (std::size_t r = 0; r < rims_.curves.size(); ++r)
       ends.push_back({rims_.curves[r].name(), rims_.curves[r].plane().normal, quads.loops[r]});
@@ -144,7 +158,7 @@ class WallTrials {
   /// Settles the nodes where a sheet lies too far from the lumen; then grows the branches that it misses,
   /// from the sheet as settled, and, thoroughly, if that is not enough from the sheet as it was.
   void settle(const WallQuads& fitted, Growth growth) {
-    const QuadSettleOptions all{.tolerance = 0.9 * tolerance()};
+    const QuadSettleOptions all{.tolerance = 0.9 * tolerance(), .shortest = short_side * options_.edge};
     WallQuads settled = fitted;
     settle_quads(settled, finder_, rims_, targets_, all);
     if (!(value(settled, fitted) > 0)) return;
