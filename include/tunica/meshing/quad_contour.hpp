@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/core/vec.hpp"
+#include "tunica/mesh/measures.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/dual_contouring.hpp"
 #include "tunica/meshing/hermite_surface.hpp"
@@ -18,14 +19,21 @@
 
 namespace tunica::meshing::detail {
 
+/// The grid where no lens is: as wide as without lenses, or so much wider that they do not change the number
+/// of quadrilaterals.
+enum class Elsewhere { kept, widened };
+
 /// The wall's quadrilaterals on a grid of that spacing as the lenses draw it together.
 [[nodiscard]] inline WallQuads quads_through(const Lenses& lenses, const mesh::Surface& lumen, double spacing,
-                                             const Rims& rims) {
+                                             const Rims& rims, Elsewhere elsewhere = Elsewhere::kept) {
   if (lenses.empty())
     return wall_quads(dual_contour(hermite_of_surface(lumen, {.spacing = spacing}), {.hold = -0.5}), rims);
   mesh::Surface magnified = lumen;
   for (Index n = 0; n < lumen.node_count(); ++n)
     vec::set_column(magnified.nodes, n, lenses.magnified(vec::column(lumen.nodes, n)));
+  // their number is that of the crossings: the area that the grid sees over the square of its spacing
+  if (elsewhere == Elsewhere::widened)
+    spacing *= std::sqrt(mesh::area_of_region(magnified, 0) / mesh::area_of_region(lumen, 0));
   mesh::QuadSurface contour =
       dual_contour(hermite_of_surface(magnified, {.spacing = spacing}), {.hold = -0.5});
   for (Index n = 0; n < contour.node_count(); ++n)

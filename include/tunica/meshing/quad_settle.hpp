@@ -21,8 +21,9 @@
 
 namespace tunica::meshing {
 
-/// Of the mean edge: shorter sides make cells whose corners turn over when the wall bends.
-inline constexpr double short_side = 0.15;
+/// Of the mean edge: below 0.15 the corners of the cells turn over when the wall bends; a side just as long
+/// as this costs nothing, so that some end a little below it.
+inline constexpr double short_side = 0.16;
 
 struct QuadSettleOptions {
   double tolerance;                                         // distance from which on places count [length]

@@ -98,8 +98,9 @@ namespace detail {
   return least;
 }
 
-/// How hard to try to grow branches.
-enum class Growth { none, once, thorough };
+/// How hard to try to grow branches: not at all; only from the best sheet so far, until one place does not
+/// get better; from the sheet as settled; from the sheet as it was too.
+enum class Growth { none, easy, once, thorough };
 
 /// Extrudes sheets of one lumen, measures the walls and keeps the best.
 template <Thickness T>
@@ -112,13 +113,36 @@ class WallTrials {
   [[nodiscard]] const Rims& rims() const { return rims_; }
   [[nodiscard]] WallReport& report() { return report_; }                   // of the sheets to come
   [[nodiscard]] const std::vector<FarPlace>& far() const { return far_; }  // of the last sheet
-  [[nodiscard]] bool sound() const { return sound_; }                      // the last: no cell is inverted
   [[nodiscard]] bool any() const { return best_.has_value(); }
   [[nodiscard]] double least() const { return least_; }  // badness so far
   /// Nothing is bad, and the best is more than just good enough: a scaled Jacobian of 0.3 with nearly half of
   /// the thickness, or one of 0.2 with four fifths.
   [[nodiscard]] bool ample() const { return !(least_ > 0) && most_ >= 0.44; }
-  [[nodiscard]] WallResult best() && { return std::move(*best_); }
+  /// MeshError where every sheet folds.
+  [[nodiscard]] WallResult best() && {
+    if (!any()) throw MeshError(folded_);
+    return std::move(*best_);
+  }
+
+  /// The last of the sheets made of a contour: each is smoothed and judged, the nodes may go farther from
+  /// their places from one to the next, until no cell of the wall is inverted.
+  [[nodiscard]] WallQuads sheet_of(const WallQuads& contour) {
+    constexpr int attempts = 3;
+    QuadSmoothOptions smooth = options_.smooth;
+    WallQuads quads;
+    for (int attempt = 1; attempt <= attempts; ++attempt, smooth.reach *= 3) {
+      quads = contour;
+      report_.attempts = attempt;
+      try {
+        fit(quads, smooth);
+        (void)judge(quads);
+      } catch (const MeshError& error) {
+        folded_ = error.what();
+      }
+      if (sound_) break;
+    }
+    return quads;
+  }
 
   /// Smooths the quadrilaterals of a contour and lays them level with the lumen.
   void fit(WallQuads& quads, const QuadSmoothOptions& smooth) {
@@ -161,14 +185,16 @@ class WallTrials {
     const QuadSettleOptions all{.tolerance = 0.9 * tolerance(), .shortest = short_side * options_.edge};
     WallQuads settled = fitted;
     settle_quads(settled, finder_, rims_, targets_, all);
-    if (!(value(settled, fitted) > 0)) return;
+    const double now = value(settled, fitted);
+    if (!(now > 0) || (growth == Growth::easy && now > least_)) return;
     std::vector<WallQuads> starts;
     if (growth != Growth::none) starts.push_back(std::move(settled));
     if (growth == Growth::thorough) starts.push_back(fitted);
+    QuadGrowOptions grow{.edge = options_.edge, .tolerance = tolerance()};
+    if (growth == Growth::easy) grow.failures = 1;
     for (WallQuads& quads : starts) {
-      const int rings =
-          grow_quads(quads, finder_, rims_, targets_, {.edge = options_.edge, .tolerance = tolerance()},
-                     [&](const WallQuads& sheet) { return value(sheet, fitted); });
+      const int rings = grow_quads(quads, finder_, rims_, targets_, grow,
+                                   [&](const WallQuads& sheet) { return value(sheet, fitted); });
       if (rings == 0) continue;
       settle_quads(quads, finder_, rims_, targets_, all);
       if (!(value(quads, fitted) > 0)) return;
@@ -194,7 +220,8 @@ class WallTrials {
   const std::vector<Vec3> targets_;
   WallReport report_;
   std::vector<FarPlace> far_;
-  bool sound_ = false;
+  bool sound_ = false;                                                 // the last sheet: no cell is inverted
+  std::string folded_;                                                 // why there is no wall yet
   double least_ = std::numeric_limits<double>::infinity(), most_ = 0;  // badness and worth of the best
   std::optional<WallResult> best_;
 };
@@ -204,10 +231,12 @@ class WallTrials {
 /// lumen: closed, region 0 the wall, the others flat caps. Inner faces follow the wall on the average, and
 /// within the tolerance where they can; those of the ends lie exactly on the rims, in the planes of the caps.
 /// Where the sheet is farther from the lumen its nodes are settled one by one, the grid is drawn together,
-/// and then blind branches that are missed are grown from the sheet. The best of the sheets is kept: one
-/// without inverted cells before all. Where the sheet folds it is smoothed again with nodes that may go
-/// farther from their places. MeshError where the edge length is too coarse for the vessel, or where the
-/// sheet folds however it is smoothed.
+/// and then blind branches that are missed are grown from the sheet. A grid that is drawn together is made
+/// wider elsewhere, so that the edge asked for stays the mean edge; only where the sheet on it is not good
+/// enough is it left as wide as it was. The best of the sheets is kept: one without inverted cells before
+/// all. Where the sheet folds it is smoothed again with nodes that may go farther from their places.
+/// MeshError where the edge length is too coarse for the vessel, or where the sheet folds however it is
+/// smoothed.
 template <Thickness T = double>
 [[nodiscard]] WallResult vessel_wall(const mesh::Surface& lumen, WallOptions<T> options) {
   TUNICA_EXPECT(options.edge > 0, "a wall has an edge length");
@@ -215,41 +244,40 @@ template <Thickness T = double>
   const double spacing = options.edge * std::sqrt(1.5);
   detail::WallTrials<T> trials(lumen, options);
   Lenses lenses;
-  int spare = 0;       // rounds since nothing was bad
-  std::string folded;  // why there is no wall yet
-  for (int round = 0; round <= options.refinements; ++round) {
-    WallQuads contour, quads;
+  const auto enough = [&] { return !(trials.least() > 0); };
+  const auto sheet = [&](detail::Elsewhere elsewhere) -> std::optional<WallQuads> {
     try {
-      contour = detail::quads_through(lenses, lumen, spacing, trials.rims());
-    } catch (const MeshError&) {
-      if (!trials.any()) throw;
-      break;
+      return trials.sheet_of(detail::quads_through(lenses, lumen, spacing, trials.rims(), elsewhere));
+    } catch (const MeshError&) {  // torn where the lenses draw it apart
+      if (!trials.any() && elsewhere == detail::Elsewhere::kept) throw;
+      return std::nullopt;
     }
-    QuadSmoothOptions smooth = options.smooth;
+  };
+  int spare = 0;  // rounds since nothing was bad
+  for (int round = 0; round <= options.refinements; ++round) {
     trials.report().refinements = round, trials.report().lenses = lenses.count();
-    constexpr int attempts = 3;
-    for (int attempt = 1; attempt <= attempts; ++attempt, smooth.reach *= 3) {
-      quads = contour;
-      trials.report().attempts = attempt;
-      try {
-        trials.fit(quads, smooth);
-        (void)trials.judge(quads);
-      } catch (const MeshError& error) {
-        folded = error.what();
-      }
-      if (trials.sound()) break;
+    Lenses next;
+    bool more = false;  // lenses than in this round
+    for (const auto elsewhere : {detail::Elsewhere::widened, detail::Elsewhere::kept}) {
+      const bool wide = elsewhere == detail::Elsewhere::widened;
+      if (wide && lenses.empty()) continue;
+      more = false;
+      const auto quads = sheet(elsewhere);
+      if (!quads) continue;
+      if (enough() && trials.far().empty()) return std::move(trials).best();
+      next = lenses;
+      more = detail::add_lenses(next, trials.far(), options.edge, trials.tolerance(), 1 / options.finest);
+      const bool last = !more || round == options.refinements;
+      trials.settle(*quads, wide        ? detail::Growth::easy
+                            : last      ? detail::Growth::thorough
+                            : round > 0 ? detail::Growth::once
+                                        : detail::Growth::none);
+      if (enough()) break;
     }
-    if (!(trials.least() > 0) && trials.far().empty()) break;
-    const auto far = trials.far();
-    const bool more = detail::add_lenses(lenses, far, options.edge, trials.tolerance(), 1 / options.finest);
-    if (!more || round == options.refinements)
-      trials.settle(quads, detail::Growth::thorough);
-    else
-      trials.settle(quads, round > 0 ? detail::Growth::once : detail::Growth::none);
-    if (trials.ample() || !more) break;
-    if (!(trials.least() > 0) && ++spare > 1) break;
+    if (!more || trials.ample()) break;
+    if (enough() && ++spare > 1) break;
+    lenses = std::move(next);
   }
-  if (!trials.any()) throw MeshError(folded);
   return std::move(trials).best();
 }
 
