@@ -247,7 +247,23 @@ TEST_SUITE("unit") {
     while (!c.alive(t) || c.across(t, 0) < 0) ++t;
     const Quad n = c.nodes(t);
     const Index p = c.add_point(vec::between(c.point(n[0]), c.point(n[1]), 0.5));
-    CHECK(flips.split_edge(t, n[0], n[1], p, -2) == (worst_quality(c) > 0));
+    const auto with_edge = [&](Index a, Index b) {
+      int count = 0;
+      for (Index e = 0; e < c.size(); ++e) count += c.alive(e) && c.has(e, a) && c.has(e, b);
+      return count;
+    };
+    const int around = with_edge(n[0], n[1]);
+    REQUIRE(around >= 3);
+    CHECK_FALSE(flips.split_edge(t, n[0], n[1], p, 1));  // no sine is larger
+    CHECK(with_edge(n[0], n[1]) == around);
+    CHECK(c.tet_of[static_cast<std::size_t>(p)] == -1);
+    const double worst = worst_quality(c);
+    CHECK(flips.split_edge(t, n[0], n[1], p));
+    CHECK(worst > 0);
+    CHECK(with_edge(n[0], n[1]) == 0);
+    CHECK(with_edge(n[0], p) == around);
+    CHECK(with_edge(p, n[1]) == around);
+    CHECK(with_edge(p, p) == 2 * around);
     CHECK(checked_volume(c) == doctest::Approx(whole).epsilon(1e-12));
 
     const FrontSurface none(test::icosphere(0).nodes, test::icosphere(0).cells);
@@ -260,7 +276,24 @@ TEST_SUITE("unit") {
       CHECK(orient3d(c.point(m[0]), c.point(m[1]), c.point(m[2]), x) <= 0);
     }
     const std::array<Index, 1> seed{home};
-    (void)insert.insert(x, seed, 1e-9);
+    constexpr double floor = 1e-9;
+    const std::size_t points = c.points.size();
+    CHECK(insert.insert(x, seed, 1) == -1);  // no sine is larger
+    CHECK(c.points.size() == points);
+    CHECK(c.alive(home));
+    const Index node = insert.insert(x, seed, floor);
+    CHECK(node == static_cast<Index>(points));
+    CHECK(c.points.size() == points + 1);
+    CHECK(c.points.back() == x);
+    int there = 0;
+    for (Index e = 0; e < c.size(); ++e) {
+      if (!c.alive(e) || !c.has(e, node)) continue;
+      const Quad& m = c.nodes(e);
+      CHECK(sine_quality(c.point(m[0]), c.point(m[1]), c.point(m[2]), c.point(m[3])) > floor);
+      ++there;
+    }
+    CHECK(there >= 4);
+    for (const Index m : n) CHECK(c.tet_of[static_cast<std::size_t>(m)] >= 0);  // none is swallowed
     CHECK(checked_volume(c) == doctest::Approx(whole).epsilon(1e-12));
   }
 
