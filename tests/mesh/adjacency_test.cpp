@@ -2,6 +2,7 @@
 #include "tunica/mesh/adjacency.hpp"
 
 #include "tunica/mesh/cell.hpp"
+#include "tunica/mesh/cells_behind.hpp"
 
 #include <doctest/doctest.h>
 
@@ -67,5 +68,28 @@ TEST_SUITE("unit") {
     check_tables<mesh::Hex8>(2);
     for (std::size_t f = 0; f < 4; ++f)  // face i of a tetrahedron is opposite to node i
       CHECK(std::count(mesh::Tet4::faces[f].begin(), mesh::Tet4::faces[f].end(), static_cast<int>(f)) == 0);
+  }
+
+  TEST_CASE("mesh: the cell behind a face has all its nodes") {
+    Connectivity<4> cells(4, 2);  // two tetrahedra that share the face 1 2 3
+    cells.col(0) << 0, 1, 2, 3;
+    cells.col(1) << 4, 3, 2, 1;
+    const auto around = mesh::cells_of_nodes(cells, 6);
+    Connectivity<3> faces(3, 5);
+    faces.col(0) << 2, 1, 0;
+    faces.col(1) << 4, 1, 3;
+    faces.col(2) << 3, 2, 1;  // of both: the first
+    faces.col(3) << 0, 1, 4;  // its nodes lie in both but in none together
+    faces.col(4) << 5, 1, 2;  // a node of no cell
+    CHECK(mesh::cells_behind(cells, around, faces) == std::vector<Index>{0, 1, 0, -1, -1});
+    for (std::size_t f = 0; f < 6; ++f) {  // hexahedra in a row: face f of the second
+      Connectivity<8> row(8, 2);
+      row.col(0) << 0, 1, 2, 3, 4, 5, 6, 7;
+      row.col(1) << 4, 5, 6, 7, 8, 9, 10, 11;
+      Connectivity<4> face(4, 1);
+      for (std::size_t k = 0; k < 4; ++k) face(static_cast<int>(k), 0) = row(mesh::Hex8::faces[f][k], 1);
+      CHECK(mesh::cells_behind(row, mesh::cells_of_nodes(row, 12), face) ==
+            std::vector<Index>{f == 0 ? 0 : 1});
+    }
   }
 }

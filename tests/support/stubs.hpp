@@ -2,10 +2,8 @@
 // Tubes with one blind branch, thick or thin, straight or leaning: what a wall's edges may be too long for.
 #pragma once
 
+#include "support/ports.hpp"
 #include "tunica/mesh/mesh.hpp"
-#include "tunica/meshing/dual_contouring.hpp"
-#include "tunica/meshing/hermite_field.hpp"
-#include "tunica/meshing/split_quads.hpp"
 
 #include <algorithm>
 #include <array>
@@ -37,19 +35,9 @@ inline mesh::Surface tube(const Branch& branch, double h) {
     const double t = std::clamp((x - root).dot(way), 0.0, reach),
                  b = branch.radius - (x - root - t * way).norm();
     const double d = std::max(blend - std::abs(a - b), 0.0);
-    double v = std::max(a, b) + d * d / (4 * blend);
-    for (const Port& p : ports) v = std::min(v, -p.normal.dot(x - p.point));
-    return v;
+    return std::max(a, b) + d * d / (4 * blend);
   };
-  auto grid = meshing::hermite_of_field(
-      field, meshing::uniform_axes({Vec3(-7, -7, -1), Vec3(7 + branch.length, 7, length + 1)}, h));
-  for (const Port& p : ports) grid.regions.push_back({p.name, true, p.point, p.normal});
-  for (auto& c : grid.crossings)
-    for (std::size_t k = 0; k < ports.size(); ++k)
-      if (std::abs(ports[k].normal.dot(c.point - ports[k].point)) < 1e-8 &&
-          c.normal.dot(ports[k].normal) > 0.9999)
-        c.region = 1 + static_cast<Index>(k);
-  return meshing::split_quads(meshing::dual_contour(grid, {.hold = -0.5}));
+  return between_ports(field, ports, {Vec3(-7, -7, -1), Vec3(7 + branch.length, 7, length + 1)}, h);
 }
 
 }  // namespace tunica::test::stubs

@@ -2,11 +2,9 @@
 // Closed lumens with flat, named ends for the tests of walls: a tilted tube and the phantom's bifurcation.
 #pragma once
 
+#include "support/ports.hpp"
 #include "tunica/image/phantom.hpp"
 #include "tunica/mesh/mesh.hpp"
-#include "tunica/meshing/dual_contouring.hpp"
-#include "tunica/meshing/hermite_field.hpp"
-#include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/tube.hpp"
 
 #include <Eigen/Geometry>
@@ -43,21 +41,8 @@ inline mesh::Surface cylinder(double radius, double length, int around) {
 /// The phantom between its ports, from its analytic level, with triangles of about h [mm].
 inline mesh::Surface bifurcation(double h) {
   const image::Phantom phantom;
-  const auto ports = image::Phantom::ports();
-  const auto field = [&](const Vec3& x) {
-    double v = -phantom.level(x).value;
-    for (const auto& p : ports) v = std::min(v, -p.normal.dot(x - p.point));
-    return v;
-  };
-  auto grid =
-      meshing::hermite_of_field(field, meshing::uniform_axes({Vec3(195, 88, 8), Vec3(255, 170, 42)}, h));
-  for (const auto& p : ports) grid.regions.push_back({p.name, true, p.point, p.normal});
-  for (auto& c : grid.crossings)
-    for (std::size_t k = 0; k < ports.size(); ++k)
-      if (std::abs(ports[k].normal.dot(c.point - ports[k].point)) < 1e-8 &&
-          c.normal.dot(ports[k].normal) > 0.9999)
-        c.region = 1 + static_cast<Index>(k);
-  return meshing::split_quads(meshing::dual_contour(grid, {.hold = -0.5}));
+  const auto field = [&](const Vec3& x) { return -phantom.level(x).value; };
+  return between_ports(field, image::Phantom::ports(), {Vec3(195, 88, 8), Vec3(255, 170, 42)}, h);
 }
 
 }  // namespace tunica::test::vessels

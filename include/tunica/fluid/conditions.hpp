@@ -7,6 +7,7 @@
 #include "tunica/fluid/boundary_function.hpp"
 #include "tunica/fluid/field.hpp"
 #include "tunica/mesh/adjacency.hpp"
+#include "tunica/mesh/cells_behind.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/patch_nodes.hpp"
 
@@ -59,7 +60,10 @@ class Conditions {
       list_.push_back({.name = patch.name,
                        .faces = patch.faces,
                        .nodes = mesh::patch_nodes(patch),
-                       .cells = cells_behind(mesh.cells, around, patch.faces)});
+                       .cells = mesh::cells_behind(mesh.cells, around, patch.faces)});
+      const auto& behind = list_.back().cells;
+      if (std::find(behind.begin(), behind.end(), -1) != behind.end())
+        throw MeshError("a face of the fluid's boundary belongs to no tetrahedron");
       for (Eigen::Index f = 0; f < patch.faces.cols(); ++f) {
         const Vec3 n = area_vector(mesh.nodes, patch.faces, f);
         for (int c = 0; c < 3; ++c) sum[c] += n[c];
@@ -162,25 +166,6 @@ class Conditions {
   }
 
  private:
-  [[nodiscard]] static std::vector<Index> cells_behind(const Connectivity<4>& cells, const mesh::Rows& around,
-                                                       const Connectivity<3>& faces) {
-    std::vector<Index> behind;
-    for (Eigen::Index f = 0; f < faces.cols(); ++f) {
-      const auto has_face = [&](Index e) {
-        int shared = 0;
-        for (int i = 0; i < 3; ++i)
-          for (int a = 0; a < 4; ++a) shared += cells(a, e) == faces(i, f);
-        return shared == 3;
-      };
-      const auto candidates = around[faces(0, f)];
-      const auto found = std::find_if(candidates.begin(), candidates.end(), has_face);
-      if (found == candidates.end())
-        throw MeshError("a face of the fluid's boundary belongs to no tetrahedron");
-      behind.push_back(*found);
-    }
-    return behind;
-  }
-
   std::size_t node_count_;
   std::vector<Condition> list_;
   std::vector<char> velocity_;

@@ -31,8 +31,7 @@ class CutNumbers {
         flat_end_(nz),
         upright_end_(nz) {
     const auto rows = static_cast<std::ptrdiff_t>(ny * nz);
-    constexpr std::ptrdiff_t rows_a_chunk = 256;
-    parallel_chunks(rows, rows_a_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    parallel_chunks(rows, detail::rows_a_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       for (auto r = static_cast<std::size_t>(begin); r < static_cast<std::size_t>(end); ++r) {
         const std::size_t j = r % ny_, k = r / ny_;
         const bool here = bits_.any(j, k);

@@ -128,7 +128,6 @@ class MarchingSweep {
     const auto& table = marching_table();
     const std::size_t rows = (ny_ - 1) * (nz_ - 1);
     std::vector<Index> first(rows + 1, 0);
-    constexpr std::ptrdiff_t rows_a_chunk = 256;
     parallel_chunks(
         static_cast<std::ptrdiff_t>(rows), rows_a_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
           for (auto r = static_cast<std::size_t>(begin); r < static_cast<std::size_t>(end); ++r) {

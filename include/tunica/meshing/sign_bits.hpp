@@ -50,6 +50,10 @@ namespace detail {
 
 inline constexpr std::size_t word_bits = 64;
 
+/// Rows of nodes or cells that a thread takes at a time: enough work to be worth the asking, few enough that
+/// all threads have some. What comes out does not depend on it.
+inline constexpr std::ptrdiff_t rows_a_chunk = 256;
+
 /// Bit n is byte n, each of them 0 or 1.
 [[nodiscard]] inline std::uint64_t packed(const std::array<std::uint8_t, word_bits>& bytes) {
   static_assert(std::endian::native == std::endian::little, "bytes are packed in the order of little-endian");
@@ -62,24 +66,26 @@ inline constexpr std::size_t word_bits = 64;
   return word;
 }
 
+/// Bits from the tests of so many values at a time.
+template <unsigned lanes, class T, class Test>
+[[nodiscard]] std::uint64_t word_of(const T* v, Test&& test) {
+  std::uint64_t word = 0;
+  for (unsigned n = 0; n < word_bits; n += lanes) word |= static_cast<std::uint64_t>(test(v + n)) << n;
+  return word;
+}
+
 /// Bit n: v[n] >= least, of 64 values.
 template <class T>
 [[nodiscard]] std::uint64_t word_reaching(const T* v, T least) {
 #if defined(__SSE2__)
-  if constexpr (std::is_same_v<T, float>) {
-    const __m128 bound = _mm_set1_ps(least);
-    std::uint64_t word = 0;
-    for (unsigned n = 0; n < word_bits; n += 4)
-      word |= static_cast<std::uint64_t>(_mm_movemask_ps(_mm_cmpge_ps(_mm_loadu_ps(v + n), bound))) << n;
-    return word;
-  }
-  if constexpr (std::is_same_v<T, double>) {
-    const __m128d bound = _mm_set1_pd(least);
-    std::uint64_t word = 0;
-    for (unsigned n = 0; n < word_bits; n += 2)
-      word |= static_cast<std::uint64_t>(_mm_movemask_pd(_mm_cmpge_pd(_mm_loadu_pd(v + n), bound))) << n;
-    return word;
-  }
+  if constexpr (std::is_same_v<T, float>)
+    return word_of<4>(v, [bound = _mm_set1_ps(least)](const float* four) {
+      return _mm_movemask_ps(_mm_cmpge_ps(_mm_loadu_ps(four), bound));
+    });
+  if constexpr (std::is_same_v<T, double>)
+    return word_of<2>(v, [bound = _mm_set1_pd(least)](const double* two) {
+      return _mm_movemask_pd(_mm_cmpge_pd(_mm_loadu_pd(two), bound));
+    });
 #endif
   std::array<std::uint8_t, word_bits> bytes;
   for (std::size_t n = 0; n < word_bits; ++n) bytes[n] = v[n] >= least;
@@ -110,9 +116,8 @@ class SignBits {
         any_(ny_ * image.axes[2].size(), 0) {
     const Reach<T> reach(iso);
     if (reach.none) return;
-    constexpr std::ptrdiff_t rows_a_chunk = 256;
     const auto rows = static_cast<std::ptrdiff_t>(ny_ * image.axes[2].size());
-    parallel_chunks(rows, rows_a_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    parallel_chunks(rows, detail::rows_a_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       for (auto r = static_cast<std::size_t>(begin); r < static_cast<std::size_t>(end); ++r)
         for (std::size_t w = 0; w < words_; ++w) {
           const std::size_t first = nx_ * r + detail::word_bits * w;

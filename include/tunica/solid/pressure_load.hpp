@@ -5,6 +5,8 @@
 #include "tunica/core/error.hpp"
 #include "tunica/core/types.hpp"
 #include "tunica/fem/geometry.hpp"
+#include "tunica/mesh/adjacency.hpp"
+#include "tunica/mesh/cells_behind.hpp"
 #include "tunica/mesh/mesh.hpp"
 
 #include <Eigen/Geometry>
@@ -28,27 +30,18 @@ class PressureLoad {
 
   /// MeshError if a face of the patch belongs to no cell.
   PressureLoad(const mesh::Mesh<C, 3>& mesh, const mesh::Patch<Face>& patch) {
-    std::vector<std::vector<Index>> cells_at(static_cast<std::size_t>(mesh.node_count()));
-    for (Index e = 0; e < mesh.cell_count(); ++e)
-      for (int a = 0; a < C::nodes; ++a) cells_at[static_cast<std::size_t>(mesh.cells(a, e))].push_back(e);
-    for (Index f = 0; f < static_cast<Index>(patch.faces.cols()); ++f) {
-      const auto nodes = patch.faces.col(f);
-      bool found = false;
-      for (const Index e : cells_at[static_cast<std::size_t>(nodes[0])]) {
-        Loaded face{.cell = e, .local = {}};
-        const auto cell = mesh.cells.col(e);
-        found = true;
-        for (int k = 0; k < face_nodes && found; ++k) {
-          const auto* at = std::find(cell.data(), cell.data() + C::nodes, nodes[k]);
-          face.local[static_cast<std::size_t>(k)] = static_cast<int>(at - cell.data());
-          found = at != cell.data() + C::nodes;
-        }
-        if (!found) continue;
-        faces_.push_back(face);
-        break;
-      }
-      if (!found)
+    const mesh::Rows around = mesh::cells_of_nodes(mesh.cells, mesh.node_count());
+    const auto behind = mesh::cells_behind(mesh.cells, around, patch.faces);
+    for (std::size_t f = 0; f < behind.size(); ++f) {
+      if (behind[f] < 0)
         throw MeshError("patch \"" + patch.name + "\": face " + std::to_string(f) + " belongs to no cell");
+      Loaded face{.cell = behind[f], .local = {}};
+      const auto cell = mesh.cells.col(behind[f]);
+      for (int k = 0; k < face_nodes; ++k)
+        face.local[static_cast<std::size_t>(k)] = static_cast<int>(
+            std::find(cell.data(), cell.data() + C::nodes, patch.faces(k, static_cast<Eigen::Index>(f))) -
+            cell.data());
+      faces_.push_back(face);
     }
   }
 
