@@ -13,6 +13,7 @@
 #include "tunica/meshing/wall_quads.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -23,8 +24,8 @@ namespace tunica::meshing {
 struct QuadGrowOptions {
   double edge;       // mean edge of the sheet [length]
   double tolerance;  // distance that is aimed at [length]
-  int rings = 12;    // at most
-  int failures = 3;  // places to give up before all others are
+  int rings = 12;    // at most, for the sake of time
+  int failures = 3;  // places to give up before all others are: each costs the trial of some twenty sheets
 };
 
 namespace detail {
@@ -66,7 +67,7 @@ struct MissedPlace {
 template <FootSurface S>
 void draw_out(WallQuads& wall, const QuadInset& inset, const S& surface, const Vec3& place, double length,
               double near) {
-  constexpr double narrow = 0.3;
+  constexpr double narrow = 0.3;  // of an edge aside: inside of branches that the grid missed
   Vec3 middle = Vec3::Zero();
   const double share = 1 / static_cast<double>(inset.border.size());
   for (const Index n : inset.border) middle = vec::along(middle, share, vec::column(wall.nodes, n));
@@ -94,29 +95,32 @@ struct GrownQuads {
 template <FootSurface S, class Judge>
 int grow_quads(WallQuads& wall, const S& surface, const Rims& rims, const std::vector<Vec3>& targets,
                const QuadGrowOptions& options, Judge&& judge) {
-  constexpr int first_rounds = 4, all_rounds = 40;  // for all places of a ring, and for the best of them
+  // Few rounds tell which places of a ring are worth many.
+  constexpr int first_rounds = 4, all_rounds = 40;
   constexpr std::size_t finalists = 3;
-  constexpr double aim = 0.9;  // of the tolerance
+  constexpr double reach = 2;   // around the branch, nodes move [edge]: the foot and a ring
+  constexpr double onto = 0.5;  // nodes of a new ring as near to the surface are laid on it [edge]
+  constexpr std::array<double, 2> parts{0.9, 0.6};  // of the way to the tip: a last ring, or one of two
   double value = judge(wall);
   std::vector<Vec3> given_up;
   int rings = 0;
   while (rings < options.rings && static_cast<int>(given_up.size()) < options.failures) {
     const auto missed = detail::most_missed(wall, targets, given_up, options.edge);
     if (!(value > 0) || !(missed.distance > options.tolerance)) break;
-    QuadSettleOptions settle{.tolerance = aim * options.tolerance,
+    QuadSettleOptions settle{.tolerance = settle_aim * options.tolerance,
                              .shortest = short_side * options.edge,
                              .rounds = first_rounds,
                              .centre = missed.place,
-                             .radius = 2 * options.edge + missed.distance};
+                             .radius = reach * options.edge + missed.distance};
     std::vector<detail::GrownQuads> tries;
     for (const Index q : detail::quads_beside(wall, missed.quad))
-      for (const double part : {0.9, 0.6}) {
+      for (const double part : parts) {
         detail::GrownQuads grown{wall, 0};
         const QuadInset inset = inset_quads(grown.wall, {q});
         const Vec3 x = vec::column(wall.nodes, inset.border[0]), y = vec::column(wall.nodes, inset.border[2]);
         const double way = vec::distance(missed.place, vec::between(x, y, 0.5));
         detail::draw_out(grown.wall, inset, surface, missed.place, std::min(part * way, options.edge),
-                         0.5 * options.edge);
+                         onto * options.edge);
         grown.amiss = settle_quads(grown.wall, surface, rims, targets, settle);
         tries.push_back(std::move(grown));
       }

@@ -80,13 +80,13 @@ class QuadMisfit {
       if (misfit(t) > 0) corners(t.quad);
   }
 
-  /// Faces farther than two rings from the node are not asked for targets.
+  /// Faces farther than two rings from the node are not asked for targets: those are nearer to other nodes.
   [[nodiscard]] Around around(Index n) const {
     Around a{n, {}, {}, {}};
     a.faces.assign(around_[n].begin(), around_[n].end());
     std::vector<Index> faces = a.faces;
     std::size_t first = 0;
-    for (int ring = 0; ring < 2; ++ring)
+    for (int ring = 0; ring < rings; ++ring)
       for (const std::size_t end = faces.size(); first < end; ++first)
         for (int k = 0; k < 4; ++k)
           for (const Index q : around_[wall_.cells(k, faces[first])])
@@ -135,7 +135,8 @@ class QuadMisfit {
 
  private:
   static constexpr std::size_t parts = 4, places = (parts + 1) * (parts + 1);  // of a side, of a face
-  static constexpr double target_weight = 4;
+  static constexpr double target_weight = 4;  // there are fewer targets than places
+  static constexpr int rings = 2;             // of faces around a node's own that are asked for targets
   using Distances = std::array<double, places>;
   [[nodiscard]] static double u(std::size_t i) { return static_cast<double>(i % (parts + 1)) / parts; }
   [[nodiscard]] static double v(std::size_t i) {

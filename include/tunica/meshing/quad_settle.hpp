@@ -25,10 +25,14 @@ namespace tunica::meshing {
 /// as this costs nothing, so that some end a little below it.
 inline constexpr double short_side = 0.16;
 
+/// Of a tolerance: what settling aims at, so that what it just misses is still within.
+inline constexpr double settle_aim = 0.9;
+
 struct QuadSettleOptions {
-  double tolerance;                                         // distance from which on places count [length]
-  double sound = 0.45;                                      // column from which on it does not count
-  double hold = 0.35;                                       // column below which no move may make it worse
+  double tolerance;  // distance from which on places count [length]
+  // Quality of a column, a scaled Jacobian; the cells extruded on it lose up to a third, and 0.3 is good.
+  double sound = 0.45;                                      // from which on it does not count
+  double hold = 0.35;                                       // below which no move may make it worse
   double shortest = 0;                                      // side from which on it does not count [length]
   int rounds = 40;                                          // over the nodes, at most
   Vec3 centre = Vec3::Zero();                               // only nodes this near to it move, and only
@@ -146,7 +150,7 @@ class QuadSettler {
 
   /// Moves a node to the best of a few places around it; whether it moved or may yet with shorter steps.
   bool settle(Index n) {
-    constexpr double gain = 1e-3;  // least, of what is amiss
+    constexpr double gain = 1e-3;  // least, of what is amiss: smaller ones would go on for ever
     const auto around = misfit_.around(n);
     const Feet below = feet(around.faces);
     const double unbounded = std::numeric_limits<double>::infinity(),
@@ -182,15 +186,19 @@ class QuadSettler {
     }
     vec::set_column(wall_.nodes, n, best_x);
     if (!moved) {
-      step_[at(n)] *= 0.5;
+      step_[at(n)] *= shorter;
       return step_[at(n)] >= last_step;
     }
     misfit_.update(around);
-    for (const Index m : below.nodes) step_[at(m)] = std::max(step_[at(m)], 2 * last_step);
+    for (const Index m : below.nodes) step_[at(m)] = std::max(step_[at(m)], awake);
     return true;
   }
 
-  static constexpr double first_step = 0.25, last_step = 0.01;  // [shortest edge at the node]
+  // Steps [shortest edge at the node]: from a quarter, which turns no face over, down to where it is settled;
+  // a node beside one that moved gets one more try.
+  static constexpr double first_step = 0.25, last_step = 0.01, shorter = 0.5, awake = 2 * last_step;
+  // A column without any height, or a side without length, weighs as much as 20 places at twice the
+  // tolerance: about those of a face.
   static constexpr double shape_weight = 20;
 
   WallQuads& wall_;

@@ -5,6 +5,7 @@
 #include "tunica/meshing/remesh_lengths.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <numbers>
 #include <utility>
@@ -23,8 +24,10 @@ inline void raise(RemeshState& w, Index n) {
   EditableSurface& s = w.edit;
   const NodeKind kind = kind_of(s, n);
   if (kind == NodeKind::corner) return;
+  // of the way to a neighbour, about half each time
+  constexpr std::array<double, 4> steps{0.3, 0.15, 0.07, 0.03};
   double best = worst_about(s, n);
-  for (const double step : {0.3, 0.15, 0.07, 0.03}) {  // of the way to a neighbour, about half each time
+  for (const double step : steps) {
     const auto m = kind == NodeKind::rim ? rim_neighbours(s, n) : s.neighbours(n);
     for (const Index to : m) {
       const Vec3 from = s.x(n);
@@ -44,7 +47,9 @@ inline void repair_angles(RemeshState& w) {
   // A triangle whose edges are between 4/5 and 4/3 of the target has 33 degrees or more. What has less than
   // 25 needs help, which may take edges a little outside of that range.
   constexpr double wanted = 0.44;  // [rad]
-  constexpr double short_side = 0.7, longest_made = 1.5;
+  // Of the target length, on either side of 4/5 and 4/3: a side that collapses and the longest edge that it
+  // may leave.
+  constexpr double collapsed = 0.7, longest_made = 1.5;
   EditableSurface& s = w.edit;
   std::vector<std::pair<double, Index>> bad;
   for (Index t = 0; t < s.triangle_count(); ++t)
@@ -58,7 +63,7 @@ inline void repair_angles(RemeshState& w) {
     for (std::size_t k = 1; k < 3; ++k)
       if (s.length(v[k], v[(k + 1) % 3]) < s.length(v[shortest], v[(shortest + 1) % 3])) shortest = k;
     const Index p = v[shortest], q = v[(shortest + 1) % 3];
-    if (s.length(p, q) < short_side * w.edge && collapse(w, p, q, longest_made * w.edge)) continue;
+    if (s.length(p, q) < collapsed * w.edge && collapse(w, p, q, longest_made * w.edge)) continue;
     for (const Index n : v) raise(w, n);
   }
 }

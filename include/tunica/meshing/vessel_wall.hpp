@@ -72,22 +72,35 @@ namespace detail {
   constexpr double sound = 0.2;       // scaled Jacobian
   constexpr double thick = 0.5;       // share of the thickness
   constexpr double least_side = 0.1;  // [edge]
+  constexpr double per_inverted = 1e6, per_jacobian = 1e3, per_share = 500, per_side = 500;
   const auto& quality = report.extrusion.quality;
   double sum = 0;
   for (const FarPlace& place : far) sum += place.distance / tolerance - 1;
-  if (quality.inverted > 0) sum += 1e6 * quality.inverted;
-  if (!(quality.scaled_jacobian.least >= sound)) sum += 1e3 * (sound - quality.scaled_jacobian.least);
+  if (quality.inverted > 0) sum += per_inverted * quality.inverted;
+  if (!(quality.scaled_jacobian.least >= sound))
+    sum += per_jacobian * (sound - quality.scaled_jacobian.least);
   const double share = std::min(report.extrusion.least_share, report.extrusion.least_between);
-  if (!(share >= thick)) sum += 500 * (thick - share);
-  if (!(report.shortest_side >= least_side)) sum += 500 * (least_side - report.shortest_side);
+  if (!(share >= thick)) sum += per_share * (thick - share);
+  if (!(report.shortest_side >= least_side)) sum += per_side * (least_side - report.shortest_side);
   return sum;
 }
+
+/// A scaled Jacobian from which on a better one is worth nothing more, and what the whole thickness is worth:
+/// as much.
+inline constexpr double good_jacobian = 0.3, worth_of_thickness = 0.3;
 
 /// Higher is better, among walls that are equally bad.
 [[nodiscard]] inline double wall_worth(const WallReport& report) {
   const auto& e = report.extrusion;
-  return std::min(e.quality.scaled_jacobian.least, 0.3) + 0.3 * std::min(e.least_share, e.least_between);
+  return std::min(e.quality.scaled_jacobian.least, good_jacobian) +
+         worth_of_thickness * std::min(e.least_share, e.least_between);
 }
+
+/// A scaled Jacobian of 0.3 with nearly half of the thickness, or one of 0.2 with four fifths.
+inline constexpr double ample_worth = 0.44;
+
+/// Of the tolerance: what levelling aims at, less than settling, which need not move then.
+inline constexpr double fit_aim = 0.85;
 
 [[nodiscard]] inline double shortest_side(const mesh::QuadSurface& quads) {
   double least = std::numeric_limits<double>::infinity();
@@ -115,9 +128,8 @@ class WallTrials {
   [[nodiscard]] const std::vector<FarPlace>& far() const { return far_; }  // of the last sheet
   [[nodiscard]] bool any() const { return best_.has_value(); }
   [[nodiscard]] double least() const { return least_; }  // badness so far
-  /// Nothing is bad, and the best is more than just good enough: a scaled Jacobian of 0.3 with nearly half of
-  /// the thickness, or one of 0.2 with four fifths.
-  [[nodiscard]] bool ample() const { return !(least_ > 0) && most_ >= 0.44; }
+  /// Nothing is bad, and the best is more than just good enough.
+  [[nodiscard]] bool ample() const { return !(least_ > 0) && most_ >= ample_worth; }
   /// MeshError where every sheet folds.
   [[nodiscard]] WallResult best() && {
     if (!any()) throw MeshError(folded_);
@@ -128,9 +140,10 @@ class WallTrials {
   /// their places from one to the next, until no cell of the wall is inverted.
   [[nodiscard]] WallQuads sheet_of(const WallQuads& contour) {
     constexpr int attempts = 3;
+    constexpr double farther = 3;  // nodes may go, from one attempt to the next
     QuadSmoothOptions smooth = options_.smooth;
     WallQuads quads;
-    for (int attempt = 1; attempt <= attempts; ++attempt, smooth.reach *= 3) {
+    for (int attempt = 1; attempt <= attempts; ++attempt, smooth.reach *= farther) {
       quads = contour;
       report_.attempts = attempt;
       try {
@@ -148,7 +161,7 @@ class WallTrials {
   void fit(WallQuads& quads, const QuadSmoothOptions& smooth) {
     report_.dropped = quads.dropped;
     report_.smoothing = smooth_quads(quads, finder_, rims_, smooth, targets_);
-    fit_quads(quads, finder_, targets_, {.tolerance = 0.85 * tolerance()});
+    fit_quads(quads, finder_, targets_, {.tolerance = fit_aim * tolerance()});
   }
 
   /// The badness of the wall on a sheet; MeshError where the sheet folds.
@@ -182,7 +195,8 @@ class WallTrials {
   /// Settles the nodes where a sheet lies too far from the lumen; then grows the branches that it misses,
   /// from the sheet as settled, and, thoroughly, if that is not enough from the sheet as it was.
   void settle(const WallQuads& fitted, Growth growth) {
-    const QuadSettleOptions all{.tolerance = 0.9 * tolerance(), .shortest = short_side * options_.edge};
+    const QuadSettleOptions all{.tolerance = settle_aim * tolerance(),
+                                .shortest = short_side * options_.edge};
     WallQuads settled = fitted;
     settle_quads(settled, finder_, rims_, targets_, all);
     const double now = value(settled, fitted);
