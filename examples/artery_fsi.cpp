@@ -26,6 +26,7 @@ void run(artery::Options& o) {
   RunFolder folder(o.folder, o.fingerprint());
   auto from = artery::beginning(o, folder);
   if (from.finished) return;
+  artery::check_report(o);
 
   // Section 3: tetrahedra of the lumen and hexahedra of the wall.
   Json report;

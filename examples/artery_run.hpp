@@ -11,8 +11,10 @@
 #include "stopwatch.hpp"
 #include "tunica/core/solve_report.hpp"
 #include "tunica/core/text.hpp"
+#include "tunica/io/atomic_file.hpp"
 
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -40,6 +42,18 @@ struct Beginning {
     std::fprintf(stderr, "no checkpoint in %s: starting from the beginning\n", o.folder.c_str());
   }
   return from;
+}
+
+/// A report that cannot be written is found before the run, not after it. DIR may be yet to be made.
+inline void check_report(const Options& o) {
+  if (o.report.empty()) return;
+  const std::filesystem::path report(o.report), folder(o.folder);
+  const auto whole = [](const std::filesystem::path& p) {
+    return std::filesystem::weakly_canonical(p / "").lexically_normal();
+  };
+  const auto parent = report.has_parent_path() ? report.parent_path() : std::filesystem::path(".");
+  if (!std::filesystem::exists(folder) && whole(parent) == whole(folder)) return;
+  io::expect_writable(report);
 }
 
 /// The error of step n, which failed in the shortest parts as well.

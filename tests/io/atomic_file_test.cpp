@@ -82,4 +82,29 @@ TEST_SUITE("unit") {
     CHECK(io::read_file(place.path / "real.txt") == "two");
     CHECK(place.files() == 2);
   }
+
+  TEST_CASE("io: whether a file can be written is known before it is and nothing is left") {
+    const Place place;
+    const auto file = place.path / "a.txt";
+    io::expect_writable(file);
+    CHECK(place.files() == 0);
+    io::write_file(file, "one");
+    io::expect_writable(file);
+    CHECK(io::read_file(file) == "one");
+    CHECK(place.files() == 1);
+    io::expect_writable("/dev/null");
+    const auto refused = [](const fs::path& path) {
+      try {
+        io::expect_writable(path);
+      } catch (const InputError& e) {
+        return std::string(e.what());
+      }
+      return std::string();
+    };
+    CHECK(refused(place.path) == refusal(place.path, "x"));
+    const auto nowhere = place.path / "no" / "a.txt";
+    CHECK(refused(nowhere) == refusal(nowhere, "x"));
+    CHECK(refused(nowhere).rfind(nowhere.string() + ": cannot be written", 0) == 0);
+    CHECK(place.files() == 1);
+  }
 }

@@ -228,6 +228,25 @@ TEST_SUITE("unit") {
     flat.nodes.col(flat.cells(2, 7)) =
         0.5 * (flat.nodes.col(flat.cells(0, 7)) + flat.nodes.col(flat.cells(1, 7)));
     CHECK(contains(refusal(flat), "no area"));
+    auto pressed = test::box_surface(1);  // closed, all in one plane
+    pressed.nodes.row(2) = 0.25 * pressed.nodes.row(0);
+    CHECK_FALSE(refusal(pressed).empty());
+    auto level = good;
+    level.nodes.row(2).setZero();
+    CHECK_FALSE(refusal(level).empty());
+    const meshing::FrontSurface round(good.nodes, good.cells);
+    for (int k = 0; k < 3; ++k) {
+      std::vector<Vec3> turned_over;
+      for (Index n = 0; n < level.node_count(); ++n)
+        turned_over.push_back({level.nodes((k + 1) % 3, n), level.nodes((k + 2) % 3, n), level.nodes(k, n)});
+      const Vec3 stretch = meshing::detail::stretch_of(round, turned_over);
+      CHECK(stretch.allFinite());
+      CHECK(stretch[(4 - k) % 3] == 1);  // across the plane
+    }
+    std::vector<Vec3> thin;
+    for (Index n = 0; n < good.node_count(); ++n)
+      thin.push_back({good.nodes(0, n), good.nodes(1, n) / 8, good.nodes(2, n) / 1024});
+    CHECK(meshing::detail::stretch_of(round, thin) == Vec3(1, 8, 1024));
     auto nan = good;
     nan.nodes(1, 3) = std::nan("");
     CHECK(contains(refusal(nan), "not finite"));

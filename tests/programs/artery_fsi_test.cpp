@@ -188,6 +188,13 @@ print("read", len(glob.glob("r/*.vtu")))
     CHECK(has(missing.err, "nothing.vtk"));
     const auto nowhere = run(folder, artery + " --edge 3 --end 0.001 --cut 0,0,0,0,1,0 --out r");
     CHECK(nowhere.status == 1);
+    // a report that cannot be written is told of before anything else, with its name
+    for (const std::string report : {"no/such/folder/f.json", ".", "r/deeper/f.json"}) {
+      CAPTURE(report);
+      const auto o = run(folder, artery + " --out r --report " + report);
+      CHECK(o.status == 1);
+      CHECK(o.err.rfind("error: " + report, 0) == 0);
+    }
     CHECK(folder.files().empty());
   }
 

@@ -103,4 +103,17 @@ inline void write_file(const std::filesystem::path& path, std::string_view bytes
   file.commit();
 }
 
+/// InputError if write_file would refuse the path now: for outputs that are written long after they are
+/// named. Leaves nothing behind, and what is there as it is.
+inline void expect_writable(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  const bool device = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+                      !std::filesystem::is_directory(status);
+  if (!device)
+    const AtomicFile probe(path);
+  else if (::access(path.c_str(), W_OK) != 0)  // opened and closed a pipe would tell its reader of an end
+    throw InputError(path.string() + ": cannot be written: " + std::strerror(errno));
+}
+
 }  // namespace tunica::io

@@ -103,7 +103,8 @@ inline void measure_surface(const FrontSurface& s, const std::vector<Vec3>& node
     for (int k = 0; k < 3; ++k) sum[k] += std::abs(d[k]);
   }
   const double most = std::max({sum[0], sum[1], sum[2]});
-  for (int k = 0; k < 3; ++k) sum[k] = std::exp2(std::round(std::log2(most / sum[k])));
+  for (int k = 0; k < 3; ++k)  // a surface in one plane, which nothing fills, is not stretched out of it
+    sum[k] = sum[k] > 0 ? std::exp2(std::round(std::log2(most / sum[k]))) : 1;
   return sum;
 }
 
