@@ -47,7 +47,8 @@ class Octree {
     double diagonal = 0;  // [m]
     for (Index f = 0; f < faces; ++f) {
       Box& box = boxes[static_cast<std::size_t>(f)];
-      for (const auto& x : corners(f).colwise()) box.extend(Vec3(x));
+      const FaceNodes<Face> x = corners(f);
+      for (int c = 0; c < Face::nodes; ++c) box.extend(Vec3(x.col(c)));
       diagonal += box.diagonal() / faces;
     }
     const search::Octree tree(boxes);
