@@ -328,9 +328,10 @@ TEST_SUITE("unit") {
     CHECK(thickness_at(varying, {1, 2, 3}) == doctest::Approx(1.2));
 
     constexpr double thickness = 0.5;
-    for (const double slope : {0.0, -1.0, -0.5}) {  // flat, and ridges
+    const ExtrudeOptions<double> options{.thickness = thickness};  // outlives the fields
+    for (const double slope : {0.0, -1.0, -0.5}) {                 // flat, and ridges
       const auto sheet = roof(4, slope);
-      detail::ExtrudeField field(sheet, {}, ExtrudeOptions<double>{.thickness = thickness});
+      detail::ExtrudeField field(sheet, {}, options);
       field.solve();
       const double along = std::sqrt(1 + slope * slope);
       for (Index n = 0; n < sheet.node_count(); ++n) {
@@ -353,7 +354,7 @@ TEST_SUITE("unit") {
     SheetRim rim{"end", Vec3(0, -1, 0.3).normalized(), {}};
     for (Index i = 0; i < 9; ++i) rim.loop.push_back(i);
     const std::vector<SheetRim> rims{rim};
-    detail::ExtrudeField field(sheet, rims, ExtrudeOptions<double>{.thickness = thickness});
+    detail::ExtrudeField field(sheet, rims, options);
     field.solve();
     for (const Index n : rim.loop) {
       CHECK(std::abs(field.offset(n).dot(rim.normal)) < 1e-14);
