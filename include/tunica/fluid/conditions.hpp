@@ -91,6 +91,7 @@ class Conditions {
 
   /// Marks nodes and cells again after a condition was changed.
   void flag() {
+    ++revision_;
     velocity_.assign(node_count_, 0);
     std::vector<Index> behind;
     for (const auto& c : list_) {
@@ -113,6 +114,8 @@ class Conditions {
 
   /// One flag a node: its velocity is prescribed.
   [[nodiscard]] const std::vector<char>& velocity_flags() const { return velocity_; }
+  /// Another number after every change of a condition.
+  [[nodiscard]] int revision() const { return revision_; }
   /// Else the pressure is known up to a constant.
   [[nodiscard]] bool any_pressure() const { return any_pressure_; }
 
@@ -170,6 +173,7 @@ class Conditions {
   std::vector<Condition> list_;
   std::vector<char> velocity_;
   bool any_pressure_ = false;
+  int revision_ = 0;
 };
 
 }  // namespace tunica::fluid

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/fluid/domain.hpp"
+#include "tunica/fluid/weak_pressure.hpp"
 #include "tunica/la/cg.hpp"
 #include "tunica/la/preconditioner.hpp"
 
@@ -40,9 +41,32 @@ class ConsistentMass {
     jacobi_.compute(matrix_);
   }
 
+  /// What of unit gradients and unit loads arrives at the velocity. With diag(M) the condition is 5 on any
+  /// mesh [WATHEN87]: the solves end.
+  [[nodiscard]] UnitResponse response(const Domain& domain) {
+    constexpr la::KrylovOptions options{.tolerance = 1e-6, .max_iterations = 100};
+    const auto& fixed = domain.conditions.velocity_flags();
+    UnitResponse unit{Vector::Zero(domain.position.cols()), Points<3>::Zero(3, domain.position.cols()), {}};
+    Vector lumped = domain.inverse_mass.cwiseInverse();
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+      if (fixed[i]) lumped[static_cast<Eigen::Index>(i)] = 0;
+    la::Jacobi<1> jacobi;
+    jacobi.compute(matrix_);
+    (void)la::cg(la::ApplyMatrix<1>{matrix_}, jacobi, lumped, unit.gradient, options);
+    for (const Condition& c : domain.conditions.list()) {
+      if (c.kind != Kind::pressure) continue;
+      for (Eigen::Index f = 0; f < c.faces.cols(); ++f)
+        for (int i = 0; i < 3; ++i)
+          add(unit.load, c.faces(i, f), 1.0 / 3, Conditions::area_vector(domain.position, c.faces, f));
+    }
+    (void)solve(domain, unit.load, options);
+    weigh_cells(domain, unit);
+    return unit;
+  }
+
   /// field (3 x nodes): g on entry, w on return.
-  SolveReport solve(const Domain& domain, Points<3>& field) {
-    constexpr la::KrylovOptions options{.tolerance = 1e-4, .max_iterations = 100};  // the condition is 5
+  SolveReport solve(const Domain& domain, Points<3>& field,
+                    const la::KrylovOptions& options = {.tolerance = 1e-4, .max_iterations = 100}) {
     const auto& fixed = domain.conditions.velocity_flags();
     right_ = field.reshaped();
     for (std::size_t i = 0; i < fixed.size(); ++i)

@@ -15,7 +15,8 @@ namespace tunica::fluid {
 
 /// A = gamma L + T,  T = L_t - sum_c Q_c Mt^-1 Q_c^T  (nodes x nodes, symmetric, positive semidefinite),
 /// where
-///   L_ij = (grad N_i, grad N_j) and what weakly prescribed pressures add (WeakFace),
+///   L_ij = (w grad N_i, grad N_j), w the part of a gradient that arrives at the velocity (UnitResponse), and
+///   what weakly prescribed pressures add (WeakFace),
 ///   L_t with weight tau and nothing else,  Q_c,ij = (tau dN_i/dx_c, N_j),  Mt = lumped (tau N_i, N_j).
 /// T p = (tau grad N_i, grad p - P grad p): it vanishes for a linear p. Without any prescribed pressure
 /// constants are the null space.
@@ -29,13 +30,14 @@ class PressureOperator {
         projected_(3, pattern.node_count()) {}
 
   /// Refills everything; tau [m3 s/kg] a cell, gamma = dt / (rho c0) [m3 s/kg].
-  void assemble(const Domain& domain, const std::vector<double>& tau, double gamma) {
+  void assemble(const Domain& domain, const UnitResponse& response, const std::vector<double>& tau,
+                double gamma) {
     const auto& [pattern, cells, tets, position_of_nodes, inverse_mass, conditions] = domain;
     forward_.setZero(), backward_.setZero(), lumped_.setZero();
     pattern.for_each_cell([&](Index e) {
       const fem::P1Tet& tet = tets[e];
       const double t = tau[static_cast<std::size_t>(e)], quarter = t * tet.volume / 4;
-      const double weight = (gamma + t) * tet.volume;
+      const double weight = (gamma * response.cell[e] + t) * tet.volume;
       const Index* position = pattern.positions(e);
       for (int a = 0; a < 4; ++a) {
         const double *ga = tet.grad.data() + 3 * a, *gb = tet.grad.data();
@@ -49,7 +51,7 @@ class PressureOperator {
         }
       }
     });
-    for_each_weak_face(domain, [&](const WeakFace& face) {
+    for_each_weak_face(domain, response, [&](const WeakFace& face) {
       for (int a = 0; a < 4; ++a)
         for (int b = 0; b < 4; ++b)
           forward_(3, domain.pattern.find(face.node(a), face.node(b))) += gamma * face.entry(a, b);

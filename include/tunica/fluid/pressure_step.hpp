@@ -2,6 +2,7 @@
 // The pressure increment, the correction of the velocity and the rotational update. [ONATE06; GUERMOND06]
 #pragma once
 
+#include "tunica/core/error.hpp"
 #include "tunica/fluid/boundary_terms.hpp"
 #include "tunica/fluid/coarse_space.hpp"
 #include "tunica/fluid/consistent_mass.hpp"
@@ -44,12 +45,21 @@ class PressureStep {
       tau_[static_cast<std::size_t>(e)] =
           stabilization.mass(fluid.density, flow.viscosity, tet.size(), length(flow.a));
     });
+    respond(domain);
     prepare(domain);
   }
-  /// L alone, times gamma.
-  void assemble_laplacian(const Domain& domain, double gamma) {
+  /// gamma L alone: what divergence a correction takes away.
+  void assemble_projection(const Domain& domain, double gamma) {
     gamma_ = gamma;
     tau_.assign(static_cast<std::size_t>(domain.cells.cols()), 0.0);
+    respond(domain);
+    prepare(domain);
+  }
+  /// The Laplacian (grad N, grad N) itself with its weakly prescribed values.
+  void assemble_laplacian(const Domain& domain) {
+    gamma_ = 1;
+    tau_.assign(static_cast<std::size_t>(domain.cells.cols()), 0.0);
+    response_ = UnitResponse::whole(domain.position.cols(), domain.cells.cols()), revision_ = -1;
     prepare(domain);
   }
 
@@ -76,7 +86,7 @@ class PressureStep {
   [[nodiscard]] Vector prescribe(const Domain& domain, const Vector& prescribed) {
     const Vector none = Vector::Zero(prescribed.size());
     Vector right = none;
-    for_each_weak_face(domain, [&](const WeakFace& face) {
+    for_each_weak_face(domain, response_, [&](const WeakFace& face) {
       for (int i = 0; i < 4; ++i) right[face.node(i)] -= gamma_ * face.form(i, none, prescribed);
     });
     return right;
@@ -156,8 +166,25 @@ class PressureStep {
     void apply(const Vector& r, Vector& z) const { fine.apply(r, z), coarse.add(r, z); }
   };
 
-  void prepare(const Domain& domain) {
+  /// Of the shape and the conditions alone: kept while they stay. MeshError when a patch has no free node.
+  void respond(const Domain& domain) {
+    const auto same = [&] {
+      return position_.cols() == domain.position.cols() &&
+             std::equal(position_.data(), position_.data() + position_.size(), domain.position.data());
+    };
+    if (revision_ == domain.conditions.revision() && same()) return;
+    const auto& fixed = domain.conditions.velocity_flags();
+    for (const Condition& c : domain.conditions.list())
+      if (c.kind == Kind::pressure &&
+          std::all_of(c.nodes.begin(), c.nodes.end(), [&](Index n) { return fixed[std::size_t(n)] != 0; }))
+        throw MeshError("no flow can pass the patch \"" + c.name +
+                        "\": all its nodes lie on walls; refine the mesh there");
     mass_.assemble(domain);
+    response_ = mass_.response(domain);
+    revision_ = domain.conditions.revision(), position_ = domain.position;
+  }
+
+  void prepare(const Domain& domain) {
     diagonal_.setZero(domain.position.cols());
     domain.pattern.for_each_cell([&](Index e) {
       const fem::P1Tet& tet = domain.tets[e];
@@ -167,7 +194,7 @@ class PressureStep {
         diagonal_[domain.cells(i, e)] += weight * dot(g, g);
       }
     });
-    operator_.assemble(domain, tau_, gamma_);
+    operator_.assemble(domain, response_, tau_, gamma_);
     cholesky_.compute(operator_.preconditioning());
     coarse_.compute(operator_.preconditioning(), operator_.entries(), operator_.inverse_mass(),
                     domain.conditions.any_pressure() ? NullSpace::none : NullSpace::constants);
@@ -185,15 +212,16 @@ class PressureStep {
     });
   }
 
-  /// gradient_ = int N grad p, laplacian_ = (grad N, grad p).
+  /// gradient_ = int N grad p, laplacian_ = (w grad N, grad p).
   void gradient(const Domain& domain, const Vector& p) {
     gradient_.setZero(3, p.size()), laplacian_.setZero(p.size());
     domain.pattern.for_each_cell([&](Index e) {
       const fem::P1Tet& tet = domain.tets[e];
       const Vec3 g = fluid::gradient(nodal(p, domain.cells, e), tet.grad);
+      const double weight = response_.cell[e] * tet.volume;
       for (int i = 0; i < 4; ++i) {
         add(gradient_, domain.cells(i, e), tet.volume / 4, g);
-        laplacian_[domain.cells(i, e)] += tet.volume * along(g, tet.grad, i);
+        laplacian_[domain.cells(i, e)] += weight * along(g, tet.grad, i);
       }
     });
   }
@@ -208,7 +236,7 @@ class PressureStep {
         for (int i = 0; i < 3; ++i) excess[i] = increment[c.faces(i, f)] - change[c.faces(i, f)];
         const Vec3 n = Conditions::area_vector(domain.position, c.faces, f), load = face_load(1, excess);
         for (int i = 0; i < 3; ++i) add(gradient_, c.faces(i, f), -load[i], n);
-        const WeakFace face(domain, c, f);
+        const WeakFace face(domain, response_, c, f);
         for (int i = 0; i < 4; ++i) laplacian_[face.node(i)] += face.form(i, increment, change);
       }
     }
@@ -221,7 +249,7 @@ class PressureStep {
       const Condition& c = domain.conditions.list()[k];
       if (c.kind != Kind::pressure) continue;
       for (Eigen::Index f = 0; f < c.faces.cols(); ++f) {
-        const WeakFace face(domain, c, f);
+        const WeakFace face(domain, response_, c, f);
         for (int i = 0; i < 4; ++i) flux[k] += gamma_ * face.form(i, increment_, change);
       }
     }
@@ -273,6 +301,9 @@ class PressureStep {
   ConsistentMass<Scalar> mass_;
   std::vector<double> tau_;  // [m3 s/kg] a cell
   double gamma_ = 0;         // dt / (rho c0) [m3 s/kg]
+  UnitResponse response_;    // at position_ under the conditions of revision_
+  Field position_;
+  int revision_ = -1;
   Vector divergence_, stabilised_, right_, increment_, laplacian_;
   Vector diagonal_;  // of L_t
   Field gradient_;

@@ -140,14 +140,14 @@ class Projection {
     options.tolerance = 1e-12;  // once a run: what is wrong here would be seen as a motion
     Eigen::VectorXd zero = Eigen::VectorXd::Zero(reference_.cols());
     const Points<3> no_force(3, 0);
-    pressure_step_.assemble_laplacian(domain, dt / fluid_.density);
+    pressure_step_.assemble_projection(domain, dt / fluid_.density);
     p_ = zero;
     SolveReport report = pressure_step_.correct(domain, no_force, 0, options, zero, zero, u_, p_);
     if (!report) return report;
     // (grad q, grad p0) = (grad q, f - rho u.grad u) - rho int q du/dt . n, p0 prescribed on its patches
     next_u_ = u_;
     conditions_.impose_velocity(state_.position, w_, t + dt, next_u_);
-    pressure_step_.assemble_laplacian(domain, 1);
+    pressure_step_.assemble_laplacian(domain);
     Points<3> rate;
     combine(1 / dt, next_u_, -1 / dt, u_, rate);
     conditions_.impose_pressure(state_.position, t, p_);

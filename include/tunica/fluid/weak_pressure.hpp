@@ -3,21 +3,27 @@
 #pragma once
 
 #include "tunica/fluid/domain.hpp"
+#include "tunica/fluid/unit_response.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace tunica::fluid {
 
 /// The terms of one face |F| of a pressure patch in
-///   (grad q, grad p) - <q, dp/dn> - <dq/dn, p - c> + <sigma q, p - c>,   sigma = 1.2 m |F| / V,
-/// c the prescribed increment, m the number of such faces of its tetrahedron. The form stands for D M^-1 D^T,
-/// the divergence of what an increment does to the velocity under a prescribed load; unlike an increment held
-/// at the nodes it leaves no row of continuity out. It is positive for sigma >= m |F| / V, as 2 sum <p,
-/// dp/dn> <= V |grad p|^2 + m / V sum |F|^2 mean(p)^2 over the m faces; and 1.2 brings the largest ratio of
-/// the two to 1: a larger sigma moves the pressure at the patch too little.
+///   (w grad q, grad p) - <w q, dp/dn> - <w dq/dn, p - c> + <sigma q, p - c>,
+/// c the prescribed increment. The form stands for D M^-1 D^T, the divergence of what an increment does to
+/// the velocity under a prescribed load; unlike an increment held at the nodes it leaves no row of continuity
+/// out. w is the part of a gradient that arrives at the velocity, and sigma the flux through the face that a
+/// unit load brings (UnitResponse): the flux of linear increments and of uniform loads is met as it is.
+/// With m such faces at the tetrahedron V and its weight w_V the form is positive for
+///   sigma >= m w^2 |F| / (w_V V), as
+///   2 sum <w p, dp/dn> <= w_V V |grad p|^2 + m / (w_V V) sum w^2 |F|^2 mean(p)^2.
+/// A larger sigma would let too much through; a larger w_V, in the term whose columns add up to zero, moves
+/// nothing through the patch. So sigma stays where it is down to half of that, and w_V gives way.
 class WeakFace {
  public:
-  WeakFace(const Domain& domain, const Condition& c, Eigen::Index f) {
+  WeakFace(const Domain& domain, const UnitResponse& response, const Condition& c, Eigen::Index f) {
     const Index cell = c.cells[static_cast<std::size_t>(f)];
     const fem::P1Tet& tet = domain.tets[cell];
     const Vec3 n = Conditions::area_vector(domain.position, c.faces, f);
@@ -27,9 +33,19 @@ class WeakFace {
       on_[a] = node_[a] == c.faces(0, f) || node_[a] == c.faces(1, f) || node_[a] == c.faces(2, f);
     }
     area_ = length(n);
-    sigma_ = 1.2 * c.loaded[static_cast<std::size_t>(f)] * area_ / tet.volume;
+    double flux = 0;  // that a unit load brings [m]
+    for (int i = 0; i < 3; ++i) {
+      third_ += response.gradient[c.faces(i, f)] / 9;
+      flux += dot(column(response.load, c.faces(i, f)), n) / 3;
+    }
+    const double w = 3 * third_, m = c.loaded[static_cast<std::size_t>(f)];
+    const double product = m * w * w * area_ / tet.volume;  // sigma w_V at the least
+    sigma_ = std::max(flux / area_, response.least * product / response.arriving(node_));
+    weight_ = sigma_ > 0 ? product / sigma_ : 0;
   }
 
+  /// w_V at the least [-].
+  [[nodiscard]] double weight() const { return weight_; }
   [[nodiscard]] Index node(int i) const { return node_[i]; }
 
   /// Of the matrix: row i, column j.
@@ -49,21 +65,38 @@ class WeakFace {
     const double mass = on_[i] && on_[j] ? area_ / 12 * (i == j ? 2 : 1) : 0;
     return sigma_ * mass - slope_[i] * third(j);
   }
-  [[nodiscard]] double third(int i) const { return on_[i] ? 1.0 / 3 : 0; }
+  [[nodiscard]] double third(int i) const { return on_[i] ? third_ : 0; }
 
   const Index* node_;  // 4, of the tetrahedron
   bool on_[4];         // the face
   double slope_[4];    // |F| dN/dn [m]
   double area_;        // [m2]
+  double third_ = 0;   // of w [-]
   double sigma_;       // [1/m]
+  double weight_;      // [-]
 };
 
 /// visit(WeakFace) for the faces of all pressure patches.
 template <class Visit>
-void for_each_weak_face(const Domain& domain, Visit&& visit) {
+void for_each_weak_face(const Domain& domain, const UnitResponse& response, Visit&& visit) {
   for (const Condition& c : domain.conditions.list())
     if (c.kind == Kind::pressure)
-      for (Eigen::Index f = 0; f < c.faces.cols(); ++f) visit(WeakFace(domain, c, f));
+      for (Eigen::Index f = 0; f < c.faces.cols(); ++f) visit(WeakFace(domain, response, c, f));
+}
+
+/// The weights of the tetrahedra: what arrives of a gradient, and at pressure patches what keeps the form
+/// positive.
+inline void weigh_cells(const Domain& domain, UnitResponse& response) {
+  response.cell.resize(domain.cells.cols());
+  for (Eigen::Index e = 0; e < domain.cells.cols(); ++e)
+    response.cell[e] = response.arriving(domain.cells.data() + 4 * e);
+  for (const Condition& c : domain.conditions.list()) {
+    if (c.kind != Kind::pressure) continue;
+    for (Eigen::Index f = 0; f < c.faces.cols(); ++f) {
+      double& weight = response.cell[c.cells[static_cast<std::size_t>(f)]];
+      weight = std::max(weight, WeakFace(domain, response, c, f).weight());
+    }
+  }
 }
 
 }  // namespace tunica::fluid
