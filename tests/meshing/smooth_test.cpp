@@ -2,12 +2,15 @@
 #include "tunica/meshing/smooth.hpp"
 
 #include "support/work_cases.hpp"
+#include "tunica/core/parallel.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/mesh/topology.hpp"
 #include "tunica/meshing/marching_cubes.hpp"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 using namespace tunica;
@@ -75,6 +78,39 @@ TEST_SUITE("unit") {
       CHECK(after.components[c].volume == doctest::Approx(before.components[c].volume).epsilon(1e-11));
   }
 
+  TEST_CASE("meshing: smoothing keeps the volume in each sweep") {
+    const auto raw = meshing::marching_cubes(
+                         test::sampled<float>(32, [](const Vec3& x) { return -test::bifurcation(x); }), 0)
+                         .surface;
+    const auto rough = meshing::marching_cubes(test::noise_volume(10, 5), 0).surface;
+    double most = 0;
+    for (const auto& start : {raw, rough}) {
+      const auto before = mesh::topology(start);
+      for (int sweeps = 1; sweeps <= 12; ++sweeps) {
+        auto s = start;
+        (void)meshing::smooth(s, {.sweeps = sweeps});
+        const auto after = mesh::topology(s);
+        REQUIRE(after.components.size() == before.components.size());
+        for (std::size_t c = 0; c < after.components.size(); ++c)
+          most = std::max(most, std::abs(after.components[c].volume / before.components[c].volume - 1));
+      }
+    }
+    MESSAGE("largest drift of a component after 1 to 12 sweeps: ", most);
+    CHECK(most <= 1e-12);
+  }
+
+  TEST_CASE("meshing: smoothing has the same bits on any number of threads") {
+    const auto raw = meshing::marching_cubes(
+                         test::sampled<float>(48, [](const Vec3& x) { return -test::bifurcation(x); }), 0)
+                         .surface;
+    auto one = raw, four = raw;
+    (void)meshing::smooth(one);
+    thread_count() = 4;
+    (void)meshing::smooth(four);
+    thread_count() = 1;
+    CHECK(one.nodes == four.nodes);
+  }
+
   TEST_CASE("meshing: smoothing without sweeps changes nothing") {
     auto s =
         meshing::marching_cubes(test::sampled<float>(12, [](const Vec3& x) { return -test::sphere(x); }), 0)
@@ -84,5 +120,27 @@ TEST_SUITE("unit") {
     CHECK(s.nodes == before.nodes);
     CHECK(report.largest_move == 0);
     CHECK_THROWS_AS((void)meshing::smooth(s, {.factor = 0.9}), ContractError);
+  }
+}
+
+TEST_SUITE("slow") {
+  TEST_CASE("meshing: smoothing makes none of 200 random surfaces cross itself") {
+    Index frozen = 0, held = 0;
+    int crossing = 0;
+    double drift = 0;
+    constexpr int surfaces = 200;
+    for (int seed = 1; seed <= surfaces; ++seed) {
+      const test::RandomWaves waves(static_cast<std::uint64_t>(seed));
+      auto s = meshing::marching_cubes(test::sampled<float>(40, [&](const Vec3& x) { return -waves(x); }), 0)
+                   .surface;
+      const auto report = meshing::smooth(s, {.sweeps = 30});
+      frozen += report.frozen, held += report.held_back;
+      drift = std::max(drift, std::abs(report.volume_after / report.volume_before - 1));
+      crossing += !meshing::self_intersections(s, 1).empty();
+    }
+    MESSAGE(surfaces, " random surfaces, 30 sweeps: ", crossing, " cross themselves, largest drift ", drift,
+            ", moves left out ", held, ", nodes frozen ", frozen);
+    CHECK(crossing == 0);
+    CHECK(drift <= 1e-12);
   }
 }
