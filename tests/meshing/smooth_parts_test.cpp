@@ -62,9 +62,9 @@ TEST_SUITE("unit") {
         for (std::uint32_t lane = 0; lane < width; ++lane) {
           std::set<Index> ring;
           for (std::uint32_t i = 0; i < group.valence; ++i) {
-            const Index a = g.node[g.ring_slots[at + i * width + lane] / detail::stride];
+            const Index a = g.node[g.ring_slots[at + i * width + lane] / detail::lane_stride];
             const Index b =
-                g.node[g.ring_slots[at + (i + 1) % group.valence * width + lane] / detail::stride];
+                g.node[g.ring_slots[at + (i + 1) % group.valence * width + lane] / detail::lane_stride];
             ring.insert(a);
             CHECK(std::count(near[a].begin(), near[a].end(), b) == 1);
           }

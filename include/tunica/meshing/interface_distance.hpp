@@ -41,12 +41,17 @@ struct FarPlace {
   return points;
 }
 
+/// Of the tolerance: a face whose 5 x 5 points all lie nearer than that is not looked at more finely.
+inline constexpr double suspect = 0.5;
+
 /// Bilinear points, 5 x 5 a quadrilateral, against the lumen; the points of its wall against the
-/// quadrilaterals, each cut into 4 x 4 smaller ones. `far` receives the places beyond the tolerance.
+/// quadrilaterals, each cut into 4 x 4 smaller ones. `far` receives the places beyond the tolerance. finer:
+/// suspect faces are searched for their farthest point among (4 finer + 1)^2.
 template <FootSurface S>
 [[nodiscard]] InterfaceDistance interface_distance(const mesh::QuadSurface& quads,
                                                    const std::vector<Vec3>& wall, const S& finder,
-                                                   double tolerance, std::vector<FarPlace>* far = nullptr) {
+                                                   double tolerance, std::vector<FarPlace>* far = nullptr,
+                                                   int finer = 1) {
   constexpr int parts = 4;
   InterfaceDistance d;
   mesh::QuadSurface fine;
@@ -56,6 +61,7 @@ template <FootSurface S>
   for (Index q = 0; q < quads.cell_count(); ++q) {
     const QuadFace face = quad_face(quads.nodes, quads.cells, q);
     const Index first = node;
+    double worst = 0;
     for (int j = 0; j <= parts; ++j)
       for (int i = 0; i <= parts; ++i) {
         const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
@@ -65,8 +71,21 @@ template <FootSurface S>
         d.quads_rms += away * away;
         d.quads_beyond += away > tolerance ? 1 : 0;
         if (far != nullptr && away > tolerance) far->push_back({p, away});
+        worst = std::max(worst, away);
         if (away > d.quads_max) d.quads_max = away, d.quads_place = p;
       }
+    if (finer > 1 && worst > suspect * tolerance) {
+      FarPlace farthest{face.at(0, 0), 0};
+      for (int j = 0; j <= parts * finer; ++j)
+        for (int i = 0; i <= parts * finer; ++i) {
+          const Vec3 p =
+              face.at(static_cast<double>(i) / (parts * finer), static_cast<double>(j) / (parts * finer));
+          const double away = finder.distance(p);
+          if (away > farthest.distance) farthest = {p, away};
+        }
+      if (far != nullptr && farthest.distance > tolerance) far->push_back(farthest);
+      if (farthest.distance > d.quads_max) d.quads_max = farthest.distance, d.quads_place = farthest.place;
+    }
     for (int j = 0; j < parts; ++j)
       for (int i = 0; i < parts; ++i) {
         const Index a = first + i + (parts + 1) * j;

@@ -20,8 +20,8 @@ struct alignas(32) Place {
   double x = 0, y = 0, z = 0, w = 0;
 };
 
-/// Place number `slot` is `stride * slot` doubles behind the first.
-inline constexpr std::uint32_t stride = 4;
+/// Place number `slot` is `lane_stride * slot` doubles behind the first.
+inline constexpr std::uint32_t lane_stride = 4;
 
 /// Packs of Width numbers: +, -, * and / are those of V.
 template <int Width>
@@ -51,7 +51,7 @@ inline Places<1> Lanes<1>::next(const Place* p) {
   return {p->x, p->y, p->z, p->w};
 }
 inline Places<1> Lanes<1>::at(const Place* base, const std::uint32_t* offset) {
-  return next(base + offset[0] / stride);
+  return next(base + offset[0] / lane_stride);
 }
 inline void Lanes<1>::put(Place* to, const Places<1>& p) {
   *to = {p.x, p.y, p.z, p.w};

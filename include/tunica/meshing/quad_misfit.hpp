@@ -6,13 +6,13 @@
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
+#include "tunica/meshing/interface_distance.hpp"
 #include "tunica/meshing/quad_face.hpp"
 #include "tunica/meshing/quad_fans.hpp"
 #include "tunica/meshing/surface_foot.hpp"
 #include "tunica/meshing/wall_quads.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -20,8 +20,8 @@
 
 namespace tunica::meshing {
 
-/// Sums of (d / tau - 1)^2 over distances d > tau: of 5 x 5 places of each face from the surface, and of the
-/// targets, points of the surface, from the sheet.
+/// Sums of (d / tau - 1)^2 over distances d > tau: of 5 x 5 places of each face from the surface (finer:
+/// (4 finer + 1)^2 where those are suspect), and of the targets, points of the surface, from the sheet.
 template <FootSurface S>
 class QuadMisfit {
  public:
@@ -42,12 +42,14 @@ class QuadMisfit {
 
   /// Looks at the faces of the nodes in reach (one entry a node) and at the targets given.
   QuadMisfit(const WallQuads& wall, const S& surface, const std::vector<Vec3>& targets, double tolerance,
-             const std::vector<char>& reach)
-      : wall_(wall),
+             const std::vector<char>& reach, int finer = 1)
+      : parts_(4 * static_cast<std::size_t>(finer)),
+        every_(static_cast<std::size_t>(finer)),
+        wall_(wall),
         surface_(surface),
         tolerance_(tolerance),
         around_(mesh::cells_of_nodes(wall.cells, static_cast<Index>(wall.nodes.cols()))),
-        away_(static_cast<std::size_t>(wall.cells.cols()), Distances{}) {
+        away_(static_cast<std::size_t>(wall.cells.cols()), Distances(places(), 0.0)) {
     for (Index q = 0; q < quads(); ++q)
       for (int k = 0; k < 4; ++k)
         if (reach[at(wall.cells(k, q))] != 0) {
@@ -134,14 +136,18 @@ class QuadMisfit {
   }
 
  private:
-  static constexpr std::size_t parts = 4, places = (parts + 1) * (parts + 1);  // of a side, of a face
   static constexpr double target_weight = 4;  // there are fewer targets than places
   static constexpr int rings = 2;             // of faces around a node's own that are asked for targets
-  using Distances = std::array<double, places>;
-  [[nodiscard]] static double u(std::size_t i) { return static_cast<double>(i % (parts + 1)) / parts; }
-  [[nodiscard]] static double v(std::size_t i) {
-    const std::size_t row = i / (parts + 1);
-    return static_cast<double>(row) / parts;
+  using Distances = std::vector<double>;      // of the places of a face
+  [[nodiscard]] std::size_t places() const { return (parts_ + 1) * (parts_ + 1); }
+  [[nodiscard]] std::size_t column(std::size_t i) const { return i % (parts_ + 1); }
+  [[nodiscard]] std::size_t row(std::size_t i) const { return i / (parts_ + 1); }
+  [[nodiscard]] bool coarse(std::size_t i) const { return column(i) % every_ == 0 && row(i) % every_ == 0; }
+  [[nodiscard]] double u(std::size_t i) const {
+    return static_cast<double>(column(i)) / static_cast<double>(parts_);
+  }
+  [[nodiscard]] double v(std::size_t i) const {
+    return static_cast<double>(row(i)) / static_cast<double>(parts_);
   }
   [[nodiscard]] static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] Index quads() const { return static_cast<Index>(wall_.cells.cols()); }
@@ -163,7 +169,7 @@ class QuadMisfit {
     int k = 0;
     while (wall_.cells(k, q) != n) ++k;
     double sum = 0;
-    for (std::size_t i = 0; i < places && sum < bound; ++i) {
+    for (std::size_t i = 0; i < places() && sum < bound; ++i) {
       const double weight = (k == 0 || k == 3 ? 1 - u(i) : u(i)) * (k < 2 ? 1 - v(i) : v(i)),
                    known = away_[at(q)][i];
       if (known + weight * moved <= tolerance_) continue;
@@ -173,8 +179,13 @@ class QuadMisfit {
   }
   [[nodiscard]] Distances distances(Index q) const {
     const QuadFace f = face(q);
-    Distances d{};
-    for (std::size_t i = 0; i < places; ++i) d[i] = surface_.distance(f.at(u(i), v(i)));
+    Distances d(places(), suspect * tolerance_);
+    double worst = 0;
+    for (std::size_t i = 0; i < places(); ++i)
+      if (coarse(i)) d[i] = surface_.distance(f.at(u(i), v(i))), worst = std::max(worst, d[i]);
+    if (worst > suspect * tolerance_)
+      for (std::size_t i = 0; i < places(); ++i)
+        if (!coarse(i)) d[i] = surface_.distance(f.at(u(i), v(i)));
     return d;
   }
 
@@ -189,6 +200,7 @@ class QuadMisfit {
     }
   }
 
+  const std::size_t parts_, every_;  // of a side; which of them are always looked at
   const WallQuads& wall_;
   const S& surface_;
   const double tolerance_;

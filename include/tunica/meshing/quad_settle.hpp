@@ -34,6 +34,7 @@ struct QuadSettleOptions {
   double sound = 0.45;                                      // from which on it does not count
   double hold = 0.35;                                       // below which no move may make it worse
   double shortest = 0;                                      // side from which on it does not count [length]
+  int finer = 1;                                            // see QuadMisfit
   int rounds = 40;                                          // over the nodes, at most
   Vec3 centre = Vec3::Zero();                               // only nodes this near to it move, and only
   double radius = std::numeric_limits<double>::infinity();  // what is as near is looked at [length]
@@ -50,7 +51,7 @@ class QuadSettler {
         options_(options),
         reach_(in_reach()),
         columns_(wall, rims),
-        misfit_(wall, surface, near(targets), options.tolerance, reach_),
+        misfit_(wall, surface, near(targets), options.tolerance, reach_, options.finer),
         neighbours_(quad_neighbours(wall.cells, count())),
         rim_(at(count()), nullptr),
         along_(at(count()), nullptr),

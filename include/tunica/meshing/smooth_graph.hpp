@@ -37,7 +37,7 @@ struct SmoothGraph {
   std::vector<std::uint32_t> slot;        // of a node: its place in the order
   std::vector<Index> node;                // of a slot
   std::vector<Index> component;           // of a node; a node without a triangle is one of its own
-  std::vector<std::uint32_t> ring_slots;  // times stride
+  std::vector<std::uint32_t> ring_slots;  // times lane_stride
   std::vector<RingGroup> groups;
   std::vector<ComponentGroups> components;
 };
@@ -204,7 +204,7 @@ void sort_by(std::vector<Index>& items, std::size_t keys, const Key& key) {
       for (std::uint32_t i = 0; i < k; ++i)
         for (std::size_t lane = 0; lane < width; ++lane) {
           const auto from = at(g.around.offset[at(g.node[b + lane])]);
-          g.ring_slots.push_back(stride * g.slot[at(rings[from + i])]);
+          g.ring_slots.push_back(lane_stride * g.slot[at(rings[from + i])]);
         }
       b += width;
     }

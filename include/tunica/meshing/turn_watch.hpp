@@ -33,7 +33,7 @@ class TurnWatch {
       const auto c = static_cast<Eigen::Index>(std::min(t, triangles_ - 1));  // the last one fills the block
       for (Eigen::Index k = 0; k < 3; ++k)
         corners_[corner(t, static_cast<std::size_t>(k))] =
-            stride * slot[static_cast<std::size_t>(cells(k, c))];
+            lane_stride * slot[static_cast<std::size_t>(cells(k, c))];
     }
   }
 

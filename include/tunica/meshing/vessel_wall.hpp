@@ -18,6 +18,7 @@
 #include "tunica/meshing/rim_curve.hpp"
 #include "tunica/meshing/surface_foot.hpp"
 #include "tunica/meshing/wall_quads.hpp"
+#include "tunica/meshing/wall_report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,62 +43,7 @@ struct WallOptions {
   QuadSmoothOptions smooth{};
 };
 
-struct WallReport {
-  InterfaceDistance distance;  // of the quadrilaterals and the lumen's wall, with the places of the largest
-  bool within = false;         // the tolerance, everywhere
-  int refinements = 0;         // rounds in which the grid was drawn together
-  std::size_t lenses = 0;      // places where it was
-  Index grown = 0;             // quadrilaterals by which blind branches were grown
-  double shortest_side = 0;    // of the quadrilaterals [edge]
-  QuadSmoothReport smoothing;
-  ExtrudeReport extrusion;
-  Index dropped = 0;  // quadrilaterals that hung on the sheet by a corner
-  int attempts = 1;   // at smoothing, until no cell is inverted
-};
-
-/// inner: the quadrilaterals on the lumen, normals outward of it; its nodes are the first of the wall's.
-struct [[nodiscard]] WallResult {
-  mesh::QuadSurface inner;
-  mesh::HexMesh wall;  // patches "inner", "outer", "ends", then one of the name of each cap
-  WallReport report;
-};
-
 namespace detail {
-
-/// Lower is better: no inverted cell before all; then the sum of what lies beyond the tolerance, to which a
-/// scaled Jacobian of 0.1 below the sound one adds a hundred places that are twice as far off as they may be,
-/// and a share of the thickness of 0.1 below half, or a side of 0.1 of the edge below a tenth, adds fifty.
-[[nodiscard]] inline double wall_badness(const WallReport& report, const std::vector<FarPlace>& far,
-                                         double tolerance) {
-  constexpr double sound = 0.2;       // scaled Jacobian
-  constexpr double thick = 0.5;       // share of the thickness
-  constexpr double least_side = 0.1;  // [edge]
-  constexpr double per_inverted = 1e6, per_jacobian = 1e3, per_share = 500, per_side = 500;
-  const auto& quality = report.extrusion.quality;
-  double sum = 0;
-  for (const FarPlace& place : far) sum += place.distance / tolerance - 1;
-  if (quality.inverted > 0) sum += per_inverted * quality.inverted;
-  if (!(quality.scaled_jacobian.least >= sound))
-    sum += per_jacobian * (sound - quality.scaled_jacobian.least);
-  const double share = std::min(report.extrusion.least_share, report.extrusion.least_between);
-  if (!(share >= thick)) sum += per_share * (thick - share);
-  if (!(report.shortest_side >= least_side)) sum += per_side * (least_side - report.shortest_side);
-  return sum;
-}
-
-/// A scaled Jacobian from which on a better one is worth nothing more, and what the whole thickness is worth:
-/// as much.
-inline constexpr double good_jacobian = 0.3, worth_of_thickness = 0.3;
-
-/// Higher is better, among walls that are equally bad.
-[[nodiscard]] inline double wall_worth(const WallReport& report) {
-  const auto& e = report.extrusion;
-  return std::min(e.quality.scaled_jacobian.least, good_jacobian) +
-         worth_of_thickness * std::min(e.least_share, e.least_between);
-}
-
-/// A scaled Jacobian of 0.3 with nearly half of the thickness, or one of 0.2 with four fifths.
-inline constexpr double ample_worth = 0.44;
 
 /// Of the tolerance: what levelling aims at, less than settling, which need not move then.
 inline constexpr double fit_aim = 0.85;
@@ -173,8 +119,9 @@ class WallTrials {
     result.report = report_;
     far_.clear();
     sound_ = false;
-    result.report.distance = interface_distance(result.inner, targets_, finder_, tolerance(), &far_);
-    result.report.within = far_.empty();
+    const auto& d = result.report.distance =
+        interface_distance(result.inner, targets_, finder_, guard_ * tolerance(), &far_, finer_);
+    result.report.within = std::max(d.quads_max, d.wall_max) <= tolerance();
     result.report.shortest_side = shortest_side(result.inner) / options_.edge;
     std::vector<SheetRim> ends;
     for (std::size_t r = 0; r < rims_.curves.size(); ++r)
@@ -185,18 +132,17 @@ class WallTrials {
     result.wall = std::move(extruded.mesh);
     result.report.extrusion = std::move(extruded.report);
     sound_ = result.report.extrusion.quality.inverted == 0;
-    const double badness = wall_badness(result.report, far_, tolerance());
+    const double badness = wall_badness(result.report, far_, guard_ * tolerance());
     const double worth = wall_worth(result.report);
     if (badness < least_ || (badness == least_ && worth > most_))
-      least_ = badness, most_ = worth, best_ = std::move(result);
+      least_ = badness, most_ = worth, best_ = std::move(result), best_quads_ = quads;
     return badness;
   }
 
   /// Settles the nodes where a sheet lies too far from the lumen; then grows the branches that it misses,
   /// from the sheet as settled, and, thoroughly, if that is not enough from the sheet as it was.
   void settle(const WallQuads& fitted, Growth growth) {
-    const QuadSettleOptions all{.tolerance = settle_aim * tolerance(),
-                                .shortest = short_side * options_.edge};
+    const QuadSettleOptions all = settling(settle_aim);
     WallQuads settled = fitted;
     settle_quads(settled, finder_, rims_, targets_, all);
     const double now = value(settled, fitted);
@@ -215,16 +161,44 @@ class WallTrials {
     }
   }
 
+  /// Looks at the best sheet more and more finely, between the places that were looked at so far. Where it
+  /// lies too far there, its nodes are settled again, with less and less left to what settling just misses;
+  /// if that is not enough it is grown.
+  void polish() {
+    if (!best_) return;
+    guard_ = 0.97;
+    for (finer_ = 2; finer_ <= 8; finer_ *= 2) {
+      const WallQuads found = best_quads_;
+      report_ = best_->report, grown_ = best_->report.grown;
+      least_ = std::numeric_limits<double>::infinity(), most_ = 0;
+      if (judge(found) > 0) improve();
+    }
+  }
+
  private:
+  void improve() {
+    for (const double aim : {settle_aim, settle_aim - 0.1, settle_aim - 0.2}) {
+      WallQuads settled = best_quads_;
+      settle_quads(settled, finder_, rims_, targets_, settling(aim));
+      if (!(value(settled, settled) > 0)) return;
+    }
+    const WallQuads settled = best_quads_;
+    settle(settled, Growth::thorough);
+  }
+
+  [[nodiscard]] QuadSettleOptions settling(double aim) const {
+    return {.tolerance = aim * tolerance(), .shortest = short_side * options_.edge, .finer = finer_};
+  }
+
   /// The badness of a sheet grown from that one; infinite where it folds.
   double value(const WallQuads& sheet, const WallQuads& from) {
-    report_.grown = static_cast<Index>(sheet.cells.cols() - from.cells.cols());
+    report_.grown = grown_ + static_cast<Index>(sheet.cells.cols() - from.cells.cols());
     double badness = std::numeric_limits<double>::infinity();
     try {
       badness = judge(sheet);
     } catch (const MeshError&) {  // it folds
     }
-    report_.grown = 0;
+    report_.grown = grown_;
     return badness;
   }
 
@@ -234,6 +208,10 @@ class WallTrials {
   const std::vector<Vec3> targets_;
   WallReport report_;
   std::vector<FarPlace> far_;
+  double guard_ = 1;  // of the tolerance: what is left goes to what lies between the places
+  int finer_ = 1;     // how finely sheets are settled and judged
+  Index grown_ = 0;   // quadrilaterals of the sheet that settling starts from
+  WallQuads best_quads_;
   bool sound_ = false;                                                 // the last sheet: no cell is inverted
   std::string folded_;                                                 // why there is no wall yet
   double least_ = std::numeric_limits<double>::infinity(), most_ = 0;  // badness and worth of the best
@@ -278,7 +256,10 @@ template <Thickness T = double>
       more = false;
       const auto quads = sheet(elsewhere);
       if (!quads) continue;
-      if (enough() && trials.far().empty()) return std::move(trials).best();
+      if (enough() && trials.far().empty()) {
+        trials.polish();
+        return std::move(trials).best();
+      }
       next = lenses;
       more = detail::add_lenses(next, trials.far(), options.edge, trials.tolerance(), 1 / options.finest);
       const bool last = !more || round == options.refinements;
@@ -292,6 +273,7 @@ template <Thickness T = double>
     if (enough() && ++spare > 1) break;
     lenses = std::move(next);
   }
+  trials.polish();
   return std::move(trials).best();
 }
 
