@@ -170,7 +170,7 @@ TEST_SUITE("unit") {
     const Index n = box.mesh.node_count();
     const std::vector<double> tau(static_cast<std::size_t>(box.mesh.cell_count()), 0.3);
     fluid::PressureOperator T(box.pattern);
-    const auto whole = fluid::UnitResponse::whole(n, box.mesh.cell_count());
+    const auto whole = fluid::UnitResponse::whole(n);
     T.assemble(box.domain(), whole, tau, 0);
     Eigen::VectorXd y, z;
     T.apply(Eigen::VectorXd(Eigen::VectorXd::Ones(n)), y);
@@ -198,7 +198,7 @@ TEST_SUITE("unit") {
     box.conditions.flag();
     const Index n = box.mesh.node_count();
     fluid::PressureOperator A(box.pattern);
-    const auto whole = fluid::UnitResponse::whole(n, box.mesh.cell_count());
+    const auto whole = fluid::UnitResponse::whole(n);
     A.assemble(box.domain(), whole, std::vector<double>(static_cast<std::size_t>(box.mesh.cell_count()), 0),
                1);
     // (grad q, grad p) - <q, dp/dn> = 0 for every q, also on the patches: there p is what is prescribed.
@@ -242,7 +242,7 @@ TEST_SUITE("unit") {
         conditions.flag();
         fluid::PressureOperator A(pattern);
         A.assemble({pattern, mesh.cells, tets, mesh.nodes, inverse_mass, conditions},
-                   fluid::UnitResponse::whole(4, 1), {0.0}, 1);
+                   fluid::UnitResponse::whole(4), {0.0}, 1);
         Eigen::Matrix4d dense;
         Eigen::VectorXd column;
         for (Index i = 0; i < 4; ++i) {
@@ -262,9 +262,9 @@ TEST_SUITE("unit") {
     const fluid::Condition& outlet = std::as_const(box.conditions)["x1"];
     fluid::ConsistentMass<> mass(box.pattern);
     mass.assemble(box.domain());
-    const auto response = mass.response(box.domain());
+    auto response = mass.response(box.domain());
+    response.least = 0;  // the loads as they are, not as much as keeps the form positive
     for (const Index n : std::as_const(box.conditions)["y0"].nodes) CHECK(response.gradient[n] == 0);
-    CHECK(response.cell.minCoeff() > 0);
     const auto flux = [&](const Points<3>& v) {
       return fluid::Conditions::flux(box.mesh.nodes, outlet.faces, v);
     };
@@ -397,7 +397,7 @@ TEST_SUITE("unit") {
     const Index n = box.mesh.node_count();
     const std::vector<double> tau(static_cast<std::size_t>(box.mesh.cell_count()), 0);
     fluid::PressureOperator L(box.pattern);
-    L.assemble(box.domain(), fluid::UnitResponse::whole(n, box.mesh.cell_count()), tau, 1);
+    L.assemble(box.domain(), fluid::UnitResponse::whole(n), tau, 1);
     fluid::CoarseSpace<> coarse(box.mesh.nodes, 1);
     CHECK(coarse.size() > 8);
     coarse.compute(L.preconditioning(), L.entries(), L.inverse_mass(), fluid::NullSpace::none);

@@ -44,9 +44,10 @@ class ConsistentMass {
   /// What of unit gradients and unit loads arrives at the velocity. With diag(M) the condition is 5 on any
   /// mesh [WATHEN87]: the solves end.
   [[nodiscard]] UnitResponse response(const Domain& domain) {
-    constexpr la::KrylovOptions options{.tolerance = 1e-6, .max_iterations = 100};
+    constexpr la::KrylovOptions options{.tolerance = 1e-8, .max_iterations = 100};
     const auto& fixed = domain.conditions.velocity_flags();
-    UnitResponse unit{Vector::Zero(domain.position.cols()), Points<3>::Zero(3, domain.position.cols()), {}};
+    UnitResponse unit{.gradient = Vector::Zero(domain.position.cols()),
+                      .load = Points<3>::Zero(3, domain.position.cols())};
     Vector lumped = domain.inverse_mass.cwiseInverse();
     for (std::size_t i = 0; i < fixed.size(); ++i)
       if (fixed[i]) lumped[static_cast<Eigen::Index>(i)] = 0;
@@ -60,7 +61,6 @@ class ConsistentMass {
           add(unit.load, c.faces(i, f), 1.0 / 3, Conditions::area_vector(domain.position, c.faces, f));
     }
     (void)solve(domain, unit.load, options);
-    weigh_cells(domain, unit);
     return unit;
   }
 

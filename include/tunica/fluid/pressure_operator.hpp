@@ -37,7 +37,8 @@ class PressureOperator {
     pattern.for_each_cell([&](Index e) {
       const fem::P1Tet& tet = tets[e];
       const double t = tau[static_cast<std::size_t>(e)], quarter = t * tet.volume / 4;
-      const double weight = (gamma * response.cell[e] + t) * tet.volume;
+      const double weight =
+          (gamma * response.arriving(cells.data() + 4 * std::ptrdiff_t{e}) + t) * tet.volume;
       const Index* position = pattern.positions(e);
       for (int a = 0; a < 4; ++a) {
         const double *ga = tet.grad.data() + 3 * a, *gb = tet.grad.data();

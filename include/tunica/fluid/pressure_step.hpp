@@ -59,7 +59,7 @@ class PressureStep {
   void assemble_laplacian(const Domain& domain) {
     gamma_ = 1;
     tau_.assign(static_cast<std::size_t>(domain.cells.cols()), 0.0);
-    response_ = UnitResponse::whole(domain.position.cols(), domain.cells.cols()), revision_ = -1;
+    response_ = UnitResponse::whole(domain.position.cols()), revision_ = -1;
     prepare(domain);
   }
 
@@ -135,11 +135,13 @@ class PressureStep {
     if (!projected) return projected;
     for (Eigen::Index i = 0; i < u.size(); ++i) u.data()[i] -= gamma_ * gradient_.data()[i];
     // p = p^k + dp - chi mu M_L^-1 (D u* + T (p^k + dp)), where D u* + T (p^k + dp) = -gamma L dp. Where
-    // elements are flat and viscous chi mu T outweighs M_L, and the update would overshoot.
+    // elements are flat and viscous chi mu T outweighs M_L, and the update would overshoot. The diagonal of
+    // L_tau bounds T up to its largest eigenvalue over the diagonal, 4/3 on a regular tetrahedron.
+    constexpr double bound = 4.0 / 3;
     p += increment_;
     for (Eigen::Index i = 0; i < p.size(); ++i)
       p[i] += rotational * gamma_ * laplacian_[i] /
-              std::max(1 / domain.inverse_mass[i], rotational * diagonal_[i]);
+              std::max(1 / domain.inverse_mass[i], bound * rotational * diagonal_[i]);
     return report;
   }
 
@@ -218,7 +220,7 @@ class PressureStep {
     domain.pattern.for_each_cell([&](Index e) {
       const fem::P1Tet& tet = domain.tets[e];
       const Vec3 g = fluid::gradient(nodal(p, domain.cells, e), tet.grad);
-      const double weight = response_.cell[e] * tet.volume;
+      const double weight = response_.arriving(domain.cells.data() + 4 * std::ptrdiff_t{e}) * tet.volume;
       for (int i = 0; i < 4; ++i) {
         add(gradient_, domain.cells(i, e), tet.volume / 4, g);
         laplacian_[domain.cells(i, e)] += weight * along(g, tet.grad, i);
