@@ -93,7 +93,7 @@ inline void Figures::print() const {
   row("peak wall stress", "%.1f kPa (von Mises)", von_mises * 1e-3);
   row("peak velocity", "%.3f m/s", speed);
   row("mass residual", "%.1e of the inflow", mass_residual);
-  row("mass defect", "%.2f %% of the inflow at most, %.2f %% in the mean", defect * 100, mean_defect() * 100);
+  row("mass defect", "%.1e of the inflow at most, %.1e in the mean", defect, mean_defect());
 }
 
 }  // namespace tunica::artery

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   return run_program(cli, argc, argv, [&] {
     if (options.image.empty()) throw UsageError("IMAGE is empty");
     const auto volume = mesh_file(out, options.image);
+    expect_outputs(volume, report_file);
     Stages stage(image_stages + 1);
     Json report;
     const auto [surface, tets] = mesh_image(options, stage, report);

@@ -55,6 +55,13 @@ class OutputFiles {
   return volume.replace_extension(".surface.vtp");
 }
 
+/// A mesh, its surface or a report that cannot be written are found before the work, not after it.
+inline void expect_outputs(const std::filesystem::path& volume, const std::string& report_file) {
+  io::expect_writable(volume);
+  io::expect_writable(surface_file(volume));
+  if (!report_file.empty()) io::expect_writable(report_file);
+}
+
 /// Ends a run: the report last, then all files stay.
 inline void finish(OutputFiles& files, Stages& stage, Json& report, const std::string& report_file) {
   stage.finish(report);

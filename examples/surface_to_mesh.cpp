@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
 
   return run_program(cli, argc, argv, [&] {
     const auto volume = mesh_file(out, in);
+    expect_outputs(volume, report_file);
     Stages stage(4);
     Json report;
     report["warnings"] = Json(std::vector<std::string>{});

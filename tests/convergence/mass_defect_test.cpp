@@ -57,29 +57,21 @@ Defects pulse(int n, bool moving) {
   return defects;
 }
 
-double order(double coarse, double fine, double ratio) {
-  return std::log(coarse / fine) / std::log(ratio);
-}
-
 }  // namespace
 
 TEST_SUITE("convergence") {
-  TEST_CASE("fluid: the mass defect of a pulse falls with the mesh") {
-    // Below eight elements across the defect changes its sign from mesh to mesh and has no order.
+  TEST_CASE("fluid: a pulse loses no mass on any mesh") {
+    // The velocity itself, not the balance of the equations: what is left is that of the linear solvers.
     for (const bool moving : {false, true}) {
       std::vector<Defects> d;
-      for (const int n : {4, 6, 8}) {
+      for (const int n : {2, 3, 4, 6, 8}) {
         d.push_back(pulse(n, moving));
         MESSAGE(std::string(moving ? "moving" : "rigid")
                 << " across " << 2 * n << ": defect " << d.back().largest << " at most and " << d.back().mean
                 << " in the mean; residual " << d.back().residual);
         CHECK(d.back().residual < 1e-8);
-        CHECK(d.back().largest < 0.03);
+        CHECK(d.back().largest < 1e-8);
       }
-      MESSAGE("orders: largest " << order(d[0].largest, d[2].largest, 2) << " mean "
-                                 << order(d[0].mean, d[2].mean, 2));
-      CHECK(order(d[0].largest, d[2].largest, 2) > 1.5);
-      CHECK(order(d[0].mean, d[2].mean, 2) > 1.5);
     }
   }
 }

@@ -5,6 +5,7 @@
 #include "tunica/fluid/boundary_terms.hpp"
 #include "tunica/fluid/coarse_space.hpp"
 #include "tunica/fluid/consistent_mass.hpp"
+#include "tunica/fluid/divergence.hpp"
 #include "tunica/fluid/domain.hpp"
 #include "tunica/fluid/element.hpp"
 #include "tunica/fluid/field.hpp"
@@ -12,12 +13,14 @@
 #include "tunica/fluid/momentum.hpp"
 #include "tunica/fluid/predictor.hpp"
 #include "tunica/fluid/pressure_operator.hpp"
+#include "tunica/fluid/pressure_response.hpp"
 #include "tunica/fluid/pressure_step.hpp"
 #include "tunica/fluid/projection.hpp"
 #include "tunica/fluid/rheology.hpp"
 #include "tunica/fluid/stabilization.hpp"
 #include "tunica/fluid/start.hpp"
 #include "tunica/fluid/state.hpp"
+#include "tunica/fluid/total_flux.hpp"
 #include "tunica/fluid/unit_response.hpp"
 #include "tunica/fluid/weak_pressure.hpp"
 #include "tunica/la/vector_ops.hpp"
@@ -284,6 +287,65 @@ TEST_SUITE("unit") {
     // dp = 0, c = -1: the velocity gets P <N n>
     CHECK(form(zero, Eigen::VectorXd::Constant(zero.size(), -1)) ==
           doctest::Approx(flux(response.load)).epsilon(1e-5));
+  }
+
+  TEST_CASE("fluid: the divergence of a linear velocity is its trace times the share of each node") {
+    const Cube box(3);
+    const Points<3> u = Vec3(2, -5, 4).asDiagonal() * box.mesh.nodes;
+    Eigen::VectorXd div;
+    fluid::divergence(box.domain(), u, div);
+    CHECK((div - box.inverse_mass.cwiseInverse()).norm() < 1e-13);
+  }
+
+  TEST_CASE("fluid: the updated form has the flux that the velocity gets for any increment") {
+    Cube box(5);
+    for (const auto* side : {"x1", "y1"}) box.conditions[side].kind = fluid::Kind::pressure;
+    box.conditions.flag();
+    const auto& ports = std::as_const(box.conditions).list();
+    const Index n = box.mesh.node_count();
+    fluid::ConsistentMass<> mass(box.pattern);
+    mass.assemble(box.domain());
+    const auto response = mass.response(box.domain());
+    const auto total = fluid::total_flux(box.domain(), response);
+    CHECK(total.f_sum > 0);
+    CHECK(total.g_sum > 0);
+    fluid::PressureOperator A(box.pattern), updated(box.pattern);
+    const std::vector<double> tau(static_cast<std::size_t>(box.mesh.cell_count()), 0);
+    A.assemble(box.domain(), response, tau, 2);
+    updated.assemble(box.domain(), response, tau, 2, total);
+    Eigen::VectorXd y, z;
+    A.apply(Eigen::VectorXd(Eigen::VectorXd::Ones(n)), y);
+    CHECK((y - 2 * total.g).norm() < 1e-12 * y.norm());
+    updated.apply(Eigen::VectorXd(Eigen::VectorXd::Ones(n)), y);
+    CHECK((y - 2 * total.f).norm() < 1e-12 * y.norm());
+    for (std::uint64_t k = 0; k < 10; ++k) {
+      const Eigen::VectorXd p = noise(n, k), q = noise(n, k + 50);
+      updated.apply(p, y), updated.apply(q, z);
+      CHECK(q.dot(y) == doctest::Approx(p.dot(z)));
+      CHECK(p.dot(y) > 0);
+      // u = -M^-1 (int N grad p - <N (p - c) n>), all its flux
+      Eigen::VectorXd c = Eigen::VectorXd::Zero(n);
+      Points<3> u = Points<3>::Zero(3, n);
+      for (Index e = 0; e < box.mesh.cell_count(); ++e)
+        for (int a = 0; a < 4; ++a)
+          u.col(box.mesh.cells(a, e)) -=
+              box.tets[e].volume / 4 * fluid::gradient(fluid::nodal(p, box.mesh.cells, e), box.tets[e].grad);
+      for (const auto& port : ports) {
+        if (port.kind != fluid::Kind::pressure) continue;
+        for (const Index i : port.nodes) c[i] = q[i];
+        for (Eigen::Index f = 0; f < port.faces.cols(); ++f) {
+          Vec3 excess;
+          for (int i = 0; i < 3; ++i) excess[i] = p[port.faces(i, f)] - q[port.faces(i, f)];
+          const Vec3 load = fluid::face_load(1, excess),
+                     area = fluid::Conditions::area_vector(box.mesh.nodes, port.faces, f);
+          for (int i = 0; i < 3; ++i) u.col(port.faces(i, f)) += load[i] * area;
+        }
+      }
+      REQUIRE(mass.solve(box.domain(), u, {.tolerance = 1e-12}));
+      double flux = 0;
+      for (const auto& port : ports) flux += fluid::Conditions::flux(box.mesh.nodes, port.faces, u);
+      CHECK(total.of_velocity(p, c) == doctest::Approx(flux).epsilon(1e-6));
+    }
   }
 
   TEST_CASE("fluid: the weak form is positive on flat and on ruined elements") {

@@ -212,13 +212,13 @@ print("read", len(glob.glob("r/*.vtu")))
     CHECK(figure(report, {"run", "frames"}) == 21);
     CHECK(figure(report, {"run", "step_halvings"}) == 0);
     CHECK(figure(report, {"run", "mass_residual"}) < 1e-8);
-    CHECK(figure(report, {"run", "mass_defect"}) < 0.03);
+    CHECK(figure(report, {"run", "mass_defect"}) < 1e-8);
     CHECK(figure(report, {"run", "worst_dihedral_degrees"}) > 5);
   }
 }
 
 TEST_SUITE("slow") {
-  TEST_CASE("artery_fsi: the mass defect falls with the mesh at order 1.5 or more") {
+  TEST_CASE("artery_fsi: no mass is lost on a coarse or on a fine mesh") {
     const auto artery = program("artery_fsi");
     if (artery.empty()) return;
     std::vector<std::string> inputs{""};  // the phantom
@@ -227,7 +227,6 @@ TEST_SUITE("slow") {
     for (const auto& input : inputs) {
       CAPTURE(input);
       const Folder folder;
-      double largest[2], mean[2];
       for (const int k : {0, 1}) {
         const auto done = run(folder, artery + input + (k == 0 ? " --edge 2" : " --edge 1") + " --out r");
         INFO(done.err);
@@ -236,14 +235,11 @@ TEST_SUITE("slow") {
         const auto report = text_of(folder.path() / "r" / "report.json");
         CHECK(figure(report, {"run", "step_halvings"}) == 0);
         CHECK(figure(report, {"run", "mass_residual"}) < 1e-8);
-        largest[k] = figure(report, {"run", "mass_defect"});
-        mean[k] = figure(report, {"run", "mass_defect_mean"});
+        const double largest = figure(report, {"run", "mass_defect"});
+        MESSAGE("mass defect: largest of the steps " << largest << " mean "
+                                                     << figure(report, {"run", "mass_defect_mean"}));
+        CHECK(largest < 1e-8);  // of the linear solvers: no order in the mesh is left
       }
-      const double of_largest = std::log2(largest[0] / largest[1]), of_mean = std::log2(mean[0] / mean[1]);
-      MESSAGE("orders of the mass defect: largest of the steps " << of_largest << " mean " << of_mean);
-      CHECK(largest[0] < 0.03);
-      CHECK(of_largest >= 1.5);
-      CHECK(of_mean >= 1.5);
     }
   }
 
@@ -262,7 +258,7 @@ TEST_SUITE("slow") {
     CHECK(figure(report, {"run", "hexahedra"}) == doctest::Approx(3000).epsilon(0.1));
     CHECK(figure(report, {"run", "step_halvings"}) == 0);
     CHECK(figure(report, {"run", "mass_residual"}) < 1e-8);
-    CHECK(figure(report, {"run", "mass_defect"}) < 0.03);
+    CHECK(figure(report, {"run", "mass_defect"}) < 1e-8);
     CHECK(figure(report, {"run", "worst_dihedral_degrees"}) > 5);
   }
 }

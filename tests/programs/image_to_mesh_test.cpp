@@ -182,12 +182,13 @@ TEST_SUITE("job") {
     refused(*good, " --iso 1299.5 --seed 0,0,0", 1, "seed 0,0,0 has the value ");
     refused(*good, " --iso 1299.5 --seed 68,0,0", 1, "seed 68,0,0 is outside the image of 68,118,34 voxels");
     {
-      const Folder folder;  // the meshes can be written, the report cannot
+      const Folder folder;  // the meshes can be written, the report cannot: said before the work begins
       const auto o =
           run(folder, program("image_to_mesh") + " \"" + good->string() + "\" --iso 1299.5 --edge 4" + seed +
                           cuts + " -o a.vtu --report no/such/folder.json");
       CHECK(o.status == 1);
       CHECK(has(o.err, "error: no/such/folder.json: cannot be written: No such file or directory"));
+      CHECK(!has(o.out + o.err, "segment"));
       CHECK(folder.files().empty());
     }
     refused(*good, " --iso 1299.5 --edge 0.02" + seed + cuts, 1, "an edge length of 0.02 would take 1.");

@@ -66,7 +66,7 @@ class ConsistentMass {
 
   /// field (3 x nodes): g on entry, w on return.
   SolveReport solve(const Domain& domain, Points<3>& field,
-                    const la::KrylovOptions& options = {.tolerance = 1e-4, .max_iterations = 100}) {
+                    const la::KrylovOptions& options = {.tolerance = 1e-6, .max_iterations = 100}) {
     const auto& fixed = domain.conditions.velocity_flags();
     right_ = field.reshaped();
     for (std::size_t i = 0; i < fixed.size(); ++i)

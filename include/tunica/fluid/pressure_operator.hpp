@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/core/parallel.hpp"
+#include "tunica/fluid/total_flux.hpp"
 #include "tunica/fluid/weak_pressure.hpp"
 #include "tunica/la/vector_ops.hpp"
 
@@ -29,9 +30,11 @@ class PressureOperator {
         lumped_(pattern.node_count()),
         projected_(3, pattern.node_count()) {}
 
-  /// Refills everything; tau [m3 s/kg] a cell, gamma = dt / (rho c0) [m3 s/kg].
+  /// Refills everything; tau [m3 s/kg] a cell, gamma = dt / (rho c0) [m3 s/kg]. With a total flux the form is
+  /// updated to have it.
   void assemble(const Domain& domain, const UnitResponse& response, const std::vector<double>& tau,
-                double gamma) {
+                double gamma, const TotalFlux& total = {}) {
+    gamma_ = gamma, total_ = total;
     const auto& [pattern, cells, tets, position_of_nodes, inverse_mass, conditions] = domain;
     forward_.setZero(), backward_.setZero(), lumped_.setZero();
     pattern.for_each_cell([&](Index e) {
@@ -89,6 +92,7 @@ class PressureOperator {
         y[i] -= sum;
       }
     });
+    if (!total_.none()) total_.update(gamma_, la::dot(total_.g, x), la::dot(total_.f, x), y);
   }
 
   /// What rounding leaves of b - A x for an x of that size: some hundred roundings of |diag(A) x|.
@@ -112,6 +116,8 @@ class PressureOperator {
   [[nodiscard]] const la::RowMatrix& preconditioning() const { return preconditioning_; }
 
  private:
+  TotalFlux total_;
+  double gamma_ = 0;
   la::RowMatrix preconditioning_;
   Eigen::Matrix<double, 4, Eigen::Dynamic> forward_;   // an entry (i, j): Q_ji and gamma L + L_t
   Eigen::Matrix<double, 3, Eigen::Dynamic> backward_;  // an entry (i, j): Q_ij

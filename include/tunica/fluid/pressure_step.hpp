@@ -2,13 +2,13 @@
 // The pressure increment, the correction of the velocity and the rotational update. [ONATE06; GUERMOND06]
 #pragma once
 
-#include "tunica/core/error.hpp"
 #include "tunica/fluid/boundary_terms.hpp"
 #include "tunica/fluid/coarse_space.hpp"
-#include "tunica/fluid/consistent_mass.hpp"
+#include "tunica/fluid/divergence.hpp"
 #include "tunica/fluid/domain.hpp"
 #include "tunica/fluid/momentum.hpp"
 #include "tunica/fluid/pressure_operator.hpp"
+#include "tunica/fluid/pressure_response.hpp"
 #include "tunica/fluid/state.hpp"
 #include "tunica/fluid/weak_pressure.hpp"
 #include "tunica/la/cg.hpp"
@@ -30,7 +30,7 @@ class PressureStep {
 
  public:
   PressureStep(const Pattern& pattern, const Field& x, double volume)
-      : operator_(pattern), coarse_(x, volume), mass_(pattern) {}
+      : operator_(pattern), coarse_(x, volume), response_(pattern) {}
 
   /// gamma L + T about the advecting velocity a; gamma = dt / (rho c0) [m3 s/kg].
   template <Rheology R, Stabilization S>
@@ -45,22 +45,18 @@ class PressureStep {
       tau_[static_cast<std::size_t>(e)] =
           stabilization.mass(fluid.density, flow.viscosity, tet.size(), length(flow.a));
     });
-    respond(domain);
+    response_.of_velocity(domain);
     prepare(domain);
   }
   /// gamma L alone: what divergence a correction takes away.
   void assemble_projection(const Domain& domain, double gamma) {
-    gamma_ = gamma;
-    tau_.assign(static_cast<std::size_t>(domain.cells.cols()), 0.0);
-    respond(domain);
-    prepare(domain);
+    response_.of_velocity(domain);
+    unstabilised(domain, gamma);
   }
   /// The Laplacian (grad N, grad N) itself with its weakly prescribed values.
   void assemble_laplacian(const Domain& domain) {
-    gamma_ = 1;
-    tau_.assign(static_cast<std::size_t>(domain.cells.cols()), 0.0);
-    response_ = UnitResponse::whole(domain.position.cols()), revision_ = -1;
-    prepare(domain);
+    response_.whole(domain);
+    unstabilised(domain, 1);
   }
 
   /// A x = b; x starts from what it holds. The prescribed increments are weighed in b. Without any prescribed
@@ -86,9 +82,11 @@ class PressureStep {
   [[nodiscard]] Vector prescribe(const Domain& domain, const Vector& prescribed) {
     const Vector none = Vector::Zero(prescribed.size());
     Vector right = none;
-    for_each_weak_face(domain, response_, [&](const WeakFace& face) {
+    for_each_weak_face(domain, response_.unit(), [&](const WeakFace& face) {
       for (int i = 0; i < 4; ++i) right[face.node(i)] -= gamma_ * face.form(i, none, prescribed);
     });
+    if (const TotalFlux& total = response_.total(); !total.none())
+      total.update(-gamma_, total.of_form(none, prescribed), total.of_velocity(none, prescribed), right);
     return right;
   }
 
@@ -98,7 +96,7 @@ class PressureStep {
   SolveReport correct(const Domain& domain, const Field& force, double rotational,
                       const la::KrylovOptions& options, const Vector& guess, const Vector& change, Field& u,
                       Vector& p) {
-    divergence(domain, u);
+    divergence(domain, u, divergence_);
     stabilise(domain, p, force);
     if (!domain.conditions.any_pressure() && leaks(domain, u)) return {Status::diverged, 0, 1};
     right_ = prescribe(domain, change) - (divergence_ + stabilised_);
@@ -131,7 +129,7 @@ class PressureStep {
     // u = u* - gamma M^-1 (int N grad dp - <N (dp - change) n>)
     gradient(domain, increment_);
     load_patches(domain, increment_, change);
-    const SolveReport projected = mass_.solve(domain, gradient_);
+    const SolveReport projected = response_.project(domain, gradient_);
     if (!projected) return projected;
     for (Eigen::Index i = 0; i < u.size(); ++i) u.data()[i] -= gamma_ * gradient_.data()[i];
     // p = p^k + dp - chi mu M_L^-1 (D u* + T (p^k + dp)), where D u* + T (p^k + dp) = -gamma L dp. Where
@@ -168,22 +166,10 @@ class PressureStep {
     void apply(const Vector& r, Vector& z) const { fine.apply(r, z), coarse.add(r, z); }
   };
 
-  /// Of the shape and the conditions alone: kept while they stay. MeshError when a patch has no free node.
-  void respond(const Domain& domain) {
-    const auto same = [&] {
-      return position_.cols() == domain.position.cols() &&
-             std::equal(position_.data(), position_.data() + position_.size(), domain.position.data());
-    };
-    if (revision_ == domain.conditions.revision() && same()) return;
-    const auto& fixed = domain.conditions.velocity_flags();
-    for (const Condition& c : domain.conditions.list())
-      if (c.kind == Kind::pressure &&
-          std::all_of(c.nodes.begin(), c.nodes.end(), [&](Index n) { return fixed[std::size_t(n)] != 0; }))
-        throw MeshError("no flow can pass the patch \"" + c.name +
-                        "\": all its nodes lie on walls; refine the mesh there");
-    mass_.assemble(domain);
-    response_ = mass_.response(domain);
-    revision_ = domain.conditions.revision(), position_ = domain.position;
+  void unstabilised(const Domain& domain, double gamma) {
+    gamma_ = gamma;
+    tau_.assign(static_cast<std::size_t>(domain.cells.cols()), 0.0);
+    prepare(domain);
   }
 
   void prepare(const Domain& domain) {
@@ -196,22 +182,10 @@ class PressureStep {
         diagonal_[domain.cells(i, e)] += weight * dot(g, g);
       }
     });
-    operator_.assemble(domain, response_, tau_, gamma_);
+    operator_.assemble(domain, response_.unit(), tau_, gamma_, response_.total());
     cholesky_.compute(operator_.preconditioning());
     coarse_.compute(operator_.preconditioning(), operator_.entries(), operator_.inverse_mass(),
                     domain.conditions.any_pressure() ? NullSpace::none : NullSpace::constants);
-  }
-
-  /// divergence_ = int N div u.
-  void divergence(const Domain& domain, const Field& u) {
-    divergence_.setZero(u.cols());
-    domain.pattern.for_each_cell([&](Index e) {
-      const fem::P1Tet& tet = domain.tets[e];
-      const Nodal3 ue = nodal(u, domain.cells, e);
-      double q = 0;
-      for (int k = 0; k < 12; ++k) q += ue.data()[k] * tet.grad.data()[k];
-      for (int i = 0; i < 4; ++i) divergence_[domain.cells(i, e)] += tet.volume / 4 * q;
-    });
   }
 
   /// gradient_ = int N grad p, laplacian_ = (w grad N, grad p).
@@ -220,7 +194,8 @@ class PressureStep {
     domain.pattern.for_each_cell([&](Index e) {
       const fem::P1Tet& tet = domain.tets[e];
       const Vec3 g = fluid::gradient(nodal(p, domain.cells, e), tet.grad);
-      const double weight = response_.arriving(domain.cells.data() + 4 * std::ptrdiff_t{e}) * tet.volume;
+      const double weight =
+          response_.unit().arriving(domain.cells.data() + 4 * std::ptrdiff_t{e}) * tet.volume;
       for (int i = 0; i < 4; ++i) {
         add(gradient_, domain.cells(i, e), tet.volume / 4, g);
         laplacian_[domain.cells(i, e)] += weight * along(g, tet.grad, i);
@@ -238,10 +213,12 @@ class PressureStep {
         for (int i = 0; i < 3; ++i) excess[i] = increment[c.faces(i, f)] - change[c.faces(i, f)];
         const Vec3 n = Conditions::area_vector(domain.position, c.faces, f), load = face_load(1, excess);
         for (int i = 0; i < 3; ++i) add(gradient_, c.faces(i, f), -load[i], n);
-        const WeakFace face(domain, response_, c, f);
+        const WeakFace face(domain, response_.unit(), c, f);
         for (int i = 0; i < 4; ++i) laplacian_[face.node(i)] += face.form(i, increment, change);
       }
     }
+    if (const TotalFlux& total = response_.total(); !total.none())
+      total.update(1, total.of_form(increment, change), total.of_velocity(increment, change), laplacian_);
   }
 
   /// Fluxes through the patches with what the weak form adds to those of u*.
@@ -251,9 +228,14 @@ class PressureStep {
       const Condition& c = domain.conditions.list()[k];
       if (c.kind != Kind::pressure) continue;
       for (Eigen::Index f = 0; f < c.faces.cols(); ++f) {
-        const WeakFace face(domain, response_, c, f);
+        const WeakFace face(domain, response_.unit(), c, f);
         for (int i = 0; i < 4; ++i) flux[k] += gamma_ * face.form(i, increment_, change);
       }
+    }
+    if (const TotalFlux& total = response_.total(); !total.none()) {
+      const double more =
+          gamma_ * (total.of_velocity(increment_, change) - total.of_form(increment_, change));
+      for (std::size_t k = 0; k < flux.size(); ++k) flux[k] += total.share[k] * more;
     }
     return flux;
   }
@@ -300,12 +282,9 @@ class PressureStep {
   PressureOperator operator_;
   la::IncompleteCholesky cholesky_;
   CoarseSpace<Scalar> coarse_;
-  ConsistentMass<Scalar> mass_;
+  PressureResponse<Scalar> response_;
   std::vector<double> tau_;  // [m3 s/kg] a cell
   double gamma_ = 0;         // dt / (rho c0) [m3 s/kg]
-  UnitResponse response_;    // at position_ under the conditions of revision_
-  Field position_;
-  int revision_ = -1;
   Vector divergence_, stabilised_, right_, increment_, laplacian_;
   Vector diagonal_;  // of L_t
   Field gradient_;

@@ -56,12 +56,13 @@ class WeakFace {
     return sum;
   }
 
- private:
   /// <sigma N_i - dN_i/dn, N_j>
   [[nodiscard]] double penalty(int i, int j) const {
     const double mass = on_[i] && on_[j] ? area_ / 12 * (i == j ? 2 : 1) : 0;
     return sigma_ * mass - slope_[i] * third(j);
   }
+
+ private:
   [[nodiscard]] double third(int i) const { return on_[i] ? third_ : 0; }
 
   const Index* node_;  // 4, of the tetrahedron
