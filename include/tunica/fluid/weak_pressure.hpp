@@ -19,8 +19,8 @@ namespace tunica::fluid {
 /// With m such faces at the tetrahedron V and its weight w_V the form is positive for
 ///   sigma >= m w^2 |F| / (w_V V), as
 ///   2 sum <w p, dp/dn> <= w_V V |grad p|^2 + m / (w_V V) sum w^2 |F|^2 mean(p)^2.
-/// That takes each tetrahedron by itself; together they need less, tests hold response.least of it to be enough
-/// on flat and on ruined elements. More would move the pressure at the patch too little.
+/// That takes each tetrahedron by itself; together they need less, tests hold response.least of it to be
+/// enough on flat and on ruined elements. More would move the pressure at the patch too little.
 class WeakFace {
  public:
   WeakFace(const Domain& domain, const UnitResponse& response, const Condition& c, Eigen::Index f) {
