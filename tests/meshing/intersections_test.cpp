@@ -6,6 +6,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <utility>
 #include <vector>
 
 using namespace tunica;
@@ -87,5 +93,72 @@ TEST_SUITE("unit") {
     CHECK(meshing::self_intersections(two, 3).size() == 3);
     two.nodes.col(two.cells(0, 0)) = two.nodes.col(two.cells(1, 0)).eval();
     CHECK(meshing::self_intersections(two).front() == std::pair<Index, Index>(0, 0));
+  }
+
+  TEST_CASE("meshing: an open star is one that an axis sees whole") {
+    // fans about node 0 in the plane z = 0, or along a spiral that goes round `turns` times
+    const auto fan = [](int count, double turns, double lift, double depth) {
+      mesh::Surface s;
+      s.nodes.resize(3, count + 1), s.cells.resize(3, count);
+      s.nodes.col(0) = Vec3(0, 0, depth);
+      for (int i = 0; i < count; ++i) {
+        const double angle = 2 * std::numbers::pi * (turns * i / count + 0.01);
+        s.nodes.col(i + 1) = Vec3(std::cos(angle), std::sin(angle), lift * std::sin(3 * angle));
+        s.cells.col(i) << 0, i + 1, (i + 1) % count + 1;
+      }
+      return s;
+    };
+    const auto open = [](const mesh::Surface& s) { return meshing::detail::open_stars(s).open[0] != 0; };
+    CHECK(open(fan(3, 1, 0, 0)));
+    CHECK(open(fan(7, 1, 0, 2)));
+    CHECK(open(fan(12, 1, 0.2, 0)));
+    CHECK_FALSE(open(fan(14, 2, 0.1, 0)));  // twice round
+    CHECK_FALSE(open(fan(7, 2, 0, 0)));
+    mesh::Surface backwards = fan(7, 1, 0, 0);
+    backwards.cells.row(1).swap(backwards.cells.row(2));
+    CHECK(open(backwards));
+    mesh::Surface gap = fan(7, 1, 0, 0);
+    gap.cells.conservativeResize(3, 6);
+    CHECK_FALSE(open(gap));  // not closed: nothing is known
+    mesh::Surface folded = fan(7, 1, 0, 0);
+    folded.nodes.col(3) = Vec3(0.1, -0.7, 0);  // a triangle turns over
+    CHECK_FALSE(open(folded));
+    mesh::Surface flat = fan(7, 1, 0, 0);
+    flat.nodes.col(3) = flat.nodes.col(0);
+    CHECK_FALSE(open(flat));
+    CHECK(meshing::detail::open_stars(flat).unknown[2] == 1);
+    CHECK(meshing::detail::open_stars(flat).unknown[4] == 0);
+  }
+
+  TEST_CASE("meshing: self-intersections are those of a search through all pairs") {
+    std::mt19937 random(3);
+    const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
+    std::size_t total = 0;
+    for (const double shake : {0.0, 0.2, 0.6, 1.0, 2.0, 4.0}) {  // of a grid spacing
+      mesh::Surface s =
+          meshing::marching_cubes(test::sampled<float>(9, [](const Vec3& x) { return -test::sphere(x); }), 0)
+              .surface;
+      for (Index n = 0; n < s.node_count(); ++n)
+        s.nodes.col(n) += shake / 8 * Vec3(uniform(), uniform(), uniform());
+      if (shake == 4) s.nodes.col(s.cells(0, 5)) = s.nodes.col(s.cells(1, 5)).eval();
+      const auto nodes = [&](Index t) {
+        return std::array<Index, 3>{s.cells(0, t), s.cells(1, t), s.cells(2, t)};
+      };
+      std::vector<std::pair<Index, Index>> all;
+      std::vector<char> flat(static_cast<std::size_t>(s.cell_count()));
+      for (Index t = 0; t < s.cell_count(); ++t) {
+        flat[static_cast<std::size_t>(t)] = meshing::detail::projection_axis(mesh::triangle(s, t)) < 0;
+        if (flat[static_cast<std::size_t>(t)]) all.emplace_back(t, t);
+      }
+      for (Index t = 0; t < s.cell_count(); ++t)
+        for (Index u = t + 1; u < s.cell_count(); ++u)
+          if (!flat[static_cast<std::size_t>(t)] && !flat[static_cast<std::size_t>(u)] &&
+              meshing::cross(nodes(t), nodes(u), [&](Index n) -> Vec3 { return s.nodes.col(n); }))
+            all.emplace_back(t, u);
+      std::sort(all.begin(), all.end());
+      CHECK(meshing::self_intersections(s) == all);
+      total += all.size();
+    }
+    CHECK(total > 1000);
   }
 }

@@ -35,7 +35,10 @@ struct Box {
   void extend(const Vec3& x) {
     for (int a = 0; a < 3; ++a) lo[a] = x[a] < lo[a] ? x[a] : lo[a], hi[a] = x[a] > hi[a] ? x[a] : hi[a];
   }
-  void extend(const Box& b) { extend(b.lo), extend(b.hi); }
+  void extend(const Box& b) {
+    for (int a = 0; a < 3; ++a)
+      lo[a] = b.lo[a] < lo[a] ? b.lo[a] : lo[a], hi[a] = b.hi[a] > hi[a] ? b.hi[a] : hi[a];
+  }
   [[nodiscard]] Vec3 centre() const {
     return {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
   }

@@ -5,8 +5,9 @@
 #include "tunica/core/error.hpp"
 #include "tunica/core/text.hpp"
 #include "tunica/mesh/measures.hpp"
+#include "tunica/meshing/open_stars.hpp"
 #include "tunica/meshing/predicates.hpp"
-#include "tunica/search/octree.hpp"
+#include "tunica/search/box_pairs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -112,36 +113,41 @@ template <class Position>
 }
 
 /// Pairs (i < j) of triangles that cross or touch other than in a common node or edge, in ascending order; a
-/// triangle without area is paired with itself. Stops after `limit` pairs. Exact, O(n log n) on surfaces.
+/// triangle without area is paired with itself. At most the first `limit` of them. Exact, O(n log n) on
+/// surfaces.
 [[nodiscard]] inline std::vector<std::pair<Index, Index>> self_intersections(
     const mesh::Surface& s, std::size_t limit = std::numeric_limits<std::size_t>::max()) {
-  std::vector<Box> boxes(static_cast<std::size_t>(s.cell_count()));
-  std::vector<char> flat(boxes.size(), 0);
-  for (Index t = 0; t < s.cell_count(); ++t) {
-    const mesh::Triangle f = mesh::triangle(s, t);
-    boxes[static_cast<std::size_t>(t)] = f.box();
-    flat[static_cast<std::size_t>(t)] = detail::projection_axis(f) < 0;
+  const auto stars = detail::open_stars(s);
+  const auto count = static_cast<std::size_t>(s.cell_count());
+  std::vector<std::pair<Index, Index>> pairs;
+  std::vector<Box> boxes(count);
+  std::vector<std::array<Index, 3>> settled(count);  // corners of open stars, other numbers for the others
+  Index other = -1;
+  for (std::size_t t = 0; t < count; ++t) {
+    const auto cell = static_cast<Index>(t);
+    const mesh::Triangle f = mesh::triangle(s, cell);
+    const bool flat = stars.unknown[t] && detail::projection_axis(f) < 0;
+    if (flat)
+      pairs.emplace_back(cell, cell);
+    else
+      boxes[t] = f.box();
+    for (int k = 0; k < 3; ++k) {
+      const Index n = s.cells(k, cell);
+      settled[t][static_cast<std::size_t>(k)] = stars.open[static_cast<std::size_t>(n)] ? n : other--;
+    }
   }
-  const search::Octree tree(boxes);
   const auto position = [&](Index n) -> Vec3 { return s.nodes.col(n); };
   const auto nodes = [&](Index t) {
     return std::array<Index, 3>{s.cells(0, t), s.cells(1, t), s.cells(2, t)};
   };
-  std::vector<std::pair<Index, Index>> pairs;
-  std::vector<Index> hits;
-  for (Index t = 0; t < s.cell_count() && pairs.size() < limit; ++t) {
-    if (flat[static_cast<std::size_t>(t)]) {
-      pairs.emplace_back(t, t);
-      continue;
-    }
-    hits.clear();
-    tree.overlapping(boxes[static_cast<std::size_t>(t)], [&](Index other) {
-      if (other > t && !flat[static_cast<std::size_t>(other)]) hits.push_back(other);
-    });
-    std::sort(hits.begin(), hits.end());
-    for (const Index other : hits)
-      if (pairs.size() < limit && cross(nodes(t), nodes(other), position)) pairs.emplace_back(t, other);
-  }
+  search::overlapping_pairs(boxes, [&](Index t, Index u) {
+    bool apart = false;  // in the open star of a common corner
+    for (const Index n : settled[static_cast<std::size_t>(t)])
+      for (const Index m : settled[static_cast<std::size_t>(u)]) apart |= n == m;
+    if (!apart && cross(nodes(t), nodes(u), position)) pairs.emplace_back(t, u);
+  });
+  std::sort(pairs.begin(), pairs.end());
+  if (pairs.size() > limit) pairs.resize(limit);
   return pairs;
 }
 
