@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Hexahedra that fill a closed surface: the interior dual mesh of a grid [PEREZ08, 3.2.2], with a layer of
+// cells on the surface, improved.
+#pragma once
+
+#include "tunica/mesh/measures.hpp"
+#include "tunica/mesh/quality.hpp"
+#include "tunica/meshing/dual_complex.hpp"
+#include "tunica/meshing/hermite_surface.hpp"
+#include "tunica/meshing/hex_guide.hpp"
+#include "tunica/meshing/improve_hexahedra.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tunica::meshing {
+
+struct HexFillOptions {
+  double edge;               // of the grid [unit of the surface]
+  double sharp_angle = 180;  // edges of the surface that turn by more are kept [degrees]
+  HexImproveOptions improve{};
+};
+
+struct [[nodiscard]] HexFillReport {
+  Index cells = 0;
+  Index inverted = 0;         // cells with a scaled Jacobian <= 0 at a corner or the centre
+  double least_jacobian = 0;  // scaled Jacobian of the worst cell
+  Vec3 worst_place{0, 0, 0};  // its centre
+  double mean_jacobian = 0;
+  double first_percentile = 0;                // of the scaled Jacobians
+  Index below_sound = 0;                      // cells with a scaled Jacobian below 0.2
+  double volume = 0;                          // of the cells
+  double surface_volume = 0;                  // that the surface encloses
+  double distance_rms = 0, distance_max = 0;  // of the border's nodes and face centres from the surface
+};
+
+struct [[nodiscard]] HexFill {
+  mesh::HexMesh mesh;  // patches of the names of the surface's regions, in their order
+  HexFillReport report;
+};
+
+namespace detail {
+
+[[nodiscard]] inline mesh::HexMesh mesh_of(const HexComplex& hexes, const mesh::Surface& surface,
+                                           const Facets& facets) {
+  mesh::HexMesh mesh;
+  mesh.nodes = vec::columns(hexes.nodes);
+  mesh.cells.resize(8, static_cast<Eigen::Index>(hexes.cells.size()));
+  for (std::size_t c = 0; c < hexes.cells.size(); ++c)
+    for (std::size_t k = 0; k < 8; ++k)
+      mesh.cells(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c)) = hexes.cells[c][k];
+  const std::size_t regions = std::max<std::size_t>(1, surface.region_names.size());
+  std::vector<std::vector<Index>> faces(regions);
+  for (std::size_t f = 0; f < hexes.border.size(); ++f) {
+    auto& list = faces[static_cast<std::size_t>(facets.region[static_cast<std::size_t>(hexes.facet[f])])];
+    list.insert(list.end(), hexes.border[f].begin(), hexes.border[f].end());
+  }
+  for (std::size_t r = 0; r < regions; ++r)
+    mesh.patches.push_back(
+        {surface.region_names.empty() ? "wall" : surface.region_names[r], vec::quads(faces[r])});
+  return mesh;
+}
+
+inline void measure(const HexComplex& hexes, const SurfaceGuide& guide, const mesh::Surface& surface,
+                    const Facets& facets, HexFill& fill) {
+  HexFillReport& r = fill.report;
+  const auto q = mesh::quality(fill.mesh);
+  r.cells = fill.mesh.cell_count();
+  r.inverted = q.inverted;
+  r.least_jacobian = q.scaled_jacobian.least, r.worst_place = q.worst_place;
+  r.mean_jacobian = q.scaled_jacobian.mean;
+  r.first_percentile = q.scaled_jacobian.quantile(0.01);
+  r.below_sound = static_cast<Index>(
+      std::lower_bound(q.scaled_jacobian.sorted.begin(), q.scaled_jacobian.sorted.end(), 0.2) -
+      q.scaled_jacobian.sorted.begin());
+  r.volume = mesh::volume(fill.mesh);
+  r.surface_volume = mesh::enclosed_volume(surface);
+  double sum = 0;
+  std::size_t count = 0;
+  const auto add = [&](double d) {
+    sum += d * d, ++count;
+    r.distance_max = std::max(r.distance_max, d);
+  };
+  for (std::size_t f = 0; f < hexes.border.size(); ++f) {
+    const Index facet = hexes.facet[f];
+    Vec3 centre(0, 0, 0);
+    Index start = -1;
+    for (const Index n : hexes.border[f]) {
+      centre = vec::along(centre, 0.25, hexes.nodes[static_cast<std::size_t>(n)]);
+      if (guide.triangle(n) >= 0 && guide.site(n).facet == facet) start = guide.triangle(n);
+    }
+    if (const auto& plane = facets.planes[static_cast<std::size_t>(facet)])
+      add(std::abs(plane->distance(centre)));
+    else
+      add(vec::distance(
+          centre,
+          (start < 0 ? guide.walk().nearest(centre, facet) : guide.walk().slide(start, centre)).point));
+  }
+  if (count > 0) r.distance_rms = std::sqrt(sum / static_cast<double>(count));
+}
+
+}  // namespace detail
+
+/// surface: closed, oriented outward. Flat regions stay flat, their faces lie in their planes exactly.
+/// MeshError where the surface is open or thinner than the grid everywhere.
+[[nodiscard]] inline HexFill dual_hexahedra(const mesh::Surface& surface, const HexFillOptions& options) {
+  TUNICA_EXPECT(options.edge > 0, "hexahedra have an edge length");
+  const Facets facet = facets(surface, options.sharp_angle);
+  mesh::Surface labelled = surface;
+  labelled.region = facet.of;
+  labelled.region_names.assign(facet.region.size(), "");
+  const HermiteGrid grid = hermite_of_surface(labelled, {.spacing = options.edge});
+  const mesh::QuadSurface contour = dual_contour(grid);
+  HexComplex hexes = dual_complex(grid, contour);
+  SurfaceGuide guide(surface, facet, hexes.sites);
+  (void)improve_hexahedra(hexes, guide, options.improve);
+  HexFill fill;
+  fill.mesh = detail::mesh_of(hexes, surface, facet);
+  detail::measure(hexes, guide, surface, facet, fill);
+  return fill;
+}
+
+}  // namespace tunica::meshing
