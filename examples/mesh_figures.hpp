@@ -9,6 +9,7 @@
 #include "tunica/mesh/topology.hpp"
 #include "tunica/meshing/handles.hpp"
 #include "tunica/meshing/remesh.hpp"
+#include "tunica/meshing/repair_report.hpp"
 #include "tunica/meshing/tetrahedra.hpp"
 
 #include <array>
@@ -107,6 +108,27 @@ inline void tell_tetrahedra(const meshing::FillReport& r, const mesh::TetMesh& t
   j["volume_before"] = r.volume_before, j["volume_after"] = r.volume_after;
   j["left_out_folds"] = r.left_out.folds, j["left_out_crossings"] = r.left_out.crosses;
   j["kept_features"] = r.kept_features;
+  return j;
+}
+
+/// What a repair changed: a count of each kind, and the places of holes.
+[[nodiscard]] inline Json repair_figures(const meshing::RepairReport& r) {
+  Json j;
+  j["welded"] = r.welded.count, j["degenerate"] = r.degenerate.count, j["duplicates"] = r.duplicates.count;
+  j["back_to_back"] = r.folded_sheets.count, j["turned"] = r.turned.count;
+  j["flaps"] = r.flaps.count, j["strays"] = r.strays.count, j["sewn"] = r.sewn.count;
+  j["parts_turned"] = r.parts_turned.count, j["split_edges"] = r.split_edges.count;
+  j["split_nodes"] = r.split_nodes.count;
+  j["crossings_before"] = r.crossings_before, j["crossings_after"] = r.crossings_after;
+  for (const bool filled : {true, false}) {
+    Json& list = j[filled ? "filled_holes" : "holes_left"];
+    list = Json(std::vector<double>{});
+    for (const auto& h : filled ? r.filled : r.left) {
+      Json hole;
+      hole["edges"] = h.edges, hole["triangles"] = h.triangles, hole["place"] = h.centre;
+      list.push(std::move(hole));
+    }
+  }
   return j;
 }
 

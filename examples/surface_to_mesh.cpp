@@ -10,23 +10,52 @@
 #include "tunica/io/vtp.hpp"
 #include "tunica/io/vtu.hpp"
 #include "tunica/meshing/remesh.hpp"
+#include "tunica/meshing/repair.hpp"
 #include "tunica/meshing/tetrahedra.hpp"
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 using namespace tunica;
 using namespace tunica::examples;
 
+namespace {
+
+/// Repairs what was read; each change is told.
+void mend(io::StlFile& file, const std::string& name, const meshing::RepairOptions& options, Json& report) {
+  try {
+    auto mended = meshing::repair(std::move(file.surface), options);
+    file.surface = std::move(mended.surface);
+    for (const auto& sentence : mended.report.sentences()) warn(report, name + ": " + sentence);
+    report["repair"] = repair_figures(mended.report);
+  } catch (const MeshError& e) {
+    throw InputError(name + ": " + e.what());
+  }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   std::string in, out, report_file;
   double edge = 0;
+  meshing::RepairOptions repair;
+  bool full_repair = false;
   Cli cli("surface_to_mesh", "Fills a closed surface with tetrahedra, in the unit of the surface.");
   cli.argument("SURFACE.stl", "the surface, text or binary", in);
   cli.option("--edge", "L", "edge length to remesh to (none: the surface is kept as given)",
              [&](const std::string& text) {
                edge = number_of<double>(text);
                if (!(edge > 0 && std::isfinite(edge))) throw UsageError("must be more than 0");
+             });
+  cli.flag("--repair",
+           "also cuts off flaps, sews open edges, fills holes, parts sheets that touch and draws crossings\n"
+           "apart (without it equal points, facets without area, duplicates and turned facets only)",
+           full_repair);
+  cli.option("--fill-holes", "N", "with --repair: holes of at most so many edges are filled (100)",
+             [&](const std::string& text) {
+               repair.hole_edges = number_of<Index>(text);
+               if (repair.hole_edges < 0) throw UsageError("must not be negative");
              });
   cli.option("-o", "OUT.vtu", "the tetrahedra; their surface goes to OUT.surface.vtp (the surface's name)",
              out);
@@ -38,7 +67,12 @@ int main(int argc, char** argv) {
     Stages stage(4);
     Json report;
     report["warnings"] = Json(std::vector<std::string>{});
-    auto closed = stage("read", [&] { return io::read_closed_stl(in); });
+    auto closed = stage("read", [&] {
+      io::StlFile file = io::read_stl(in);
+      repair.extent = full_repair ? meshing::RepairExtent::full : meshing::RepairExtent::safe;
+      mend(file, in, repair, report);
+      return io::closed_surface(in, std::move(file));
+    });
     for (const auto& notice : closed.notices) warn(report, notice);
     mesh::Surface& surface = closed.surface;
     name_flat_ends(surface);  // their rims stay sharp, and they are patches of their own
