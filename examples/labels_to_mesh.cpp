@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// labels_to_mesh: a label image (a segmentation) to tetrahedra of several materials that conform.
+#include "cli.hpp"
+#include "json.hpp"
+#include "material_figures.hpp"
+#include "output_files.hpp"
+#include "stages.hpp"
+#include "tunica/io/vtk_image.hpp"
+#include "tunica/io/vtu.hpp"
+#include "tunica/meshing/multi_region.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+using namespace tunica;
+using namespace tunica::examples;
+
+int main(int argc, char** argv) {
+  std::string in, out, report_file;
+  meshing::MultiRegionOptions options;
+  Cli cli("labels_to_mesh",
+          "Fills the labels of an image with tetrahedra, in the unit of the image; 0 is outside.");
+  cli.argument("LABELS.vtk", "VTK legacy image whose values are whole numbers", in);
+  cli.repeated(
+      "--name", "N=TEXT", "what label N is called, 1=lumen (material N)", [&](const std::string& text) {
+        const auto equal = text.find('=');
+        if (equal == std::string::npos || equal + 1 == text.size()) throw UsageError("expected N=TEXT");
+        options.names.push_back({number_of<std::int32_t>(text.substr(0, equal)), text.substr(equal + 1)});
+      });
+  cli.option("--sweeps", "N", "sweeps of the smoothing (20); 0: interfaces half-way between voxels",
+             [&](const std::string& text) {
+               options.sweeps = number_of<int>(text);
+               if (options.sweeps < 0 || options.sweeps > 1000) throw UsageError("must be from 0 to 1000");
+             });
+  cli.option("-o", "OUT.vtu", "the tetrahedra, with their labels as \"material\" (the image's name)", out);
+  cli.option("--report", "FILE.json", "figures, and elapsed and CPU seconds of each stage", report_file);
+
+  return run_program(cli, argc, argv, [&] {
+    const auto volume = mesh_file(out, in);
+    expect_outputs(volume, report_file);
+    Stages stage(3);
+    Json report;
+    report["warnings"] = Json(std::vector<std::string>{});
+    const auto labels = stage("read", [&] { return image::as_labels(io::read_vtk_image<double>(in).image); });
+    const auto meshed = stage("mesh", [&] { return meshing::multi_region(labels, options); });
+    report["fill"] = material_figures(meshed);
+    OutputFiles files;
+    stage("write", [&] {
+      const std::vector<std::int32_t> material(meshed.material.begin(), meshed.material.end());
+      files.write(volume, [&](const auto& path) {
+        io::write_vtu(path, meshed.mesh, {.cells = {{"material", material}}});
+      });
+    });
+    finish(files, stage, report, report_file);
+  });
+}
