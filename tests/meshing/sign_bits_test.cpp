@@ -95,24 +95,23 @@ TEST_SUITE("unit") {
     Index next = 0;
     const auto flat = [&](std::size_t k) {
       for (std::size_t j = 0; j < 5; ++j) {
-        CHECK(cuts.flat(j, k).first == next);
-        for (std::size_t i = 0; i < 70; ++i) {
-          if (i + 1 < 70 && bits.inside(i, j, k) != bits.inside(i + 1, j, k))
-            CHECK(cuts.number(0, i, j, k) == next++);
-          if (j + 1 < 5 && bits.inside(i, j, k) != bits.inside(i, j + 1, k))
-            CHECK(cuts.number(1, i, j, k) == next++);
-        }
-        CHECK(cuts.flat(j, k).end == next);
+        CHECK(cuts.starts(j, k).x == next);
+        for (std::size_t i = 0; i + 1 < 70; ++i)
+          if (bits.inside(i, j, k) != bits.inside(i + 1, j, k)) CHECK(cuts.number(0, i, j, k) == next++);
+        CHECK(cuts.starts(j, k).y == next);
+        for (std::size_t i = 0; i < 70 && j + 1 < 5; ++i)
+          if (bits.inside(i, j, k) != bits.inside(i, j + 1, k)) CHECK(cuts.number(1, i, j, k) == next++);
+        CHECK(cuts.starts(j + 1, k).x == next);
       }
     };
     flat(0);
     for (std::size_t k = 0; k + 1 < 4; ++k) {
       flat(k + 1);
       for (std::size_t j = 0; j < 5; ++j) {
-        CHECK(cuts.upright(j, k).first == next);
+        CHECK(cuts.starts(j, k).z == next);
         for (std::size_t i = 0; i < 70; ++i)
           if (bits.inside(i, j, k) != bits.inside(i, j, k + 1)) CHECK(cuts.number(2, i, j, k) == next++);
-        CHECK(cuts.upright(j, k).end == next);
+        CHECK(cuts.starts(j + 1, k).z == next);
       }
     }
     CHECK(cuts.count() == next);

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace tunica::meshing {
@@ -18,54 +19,39 @@ struct CutWords {
   std::uint64_t x, y, z;
 };
 
-/// Order: the flat edges (x before y at a node) of slice 0; then for each slice k > 0 its flat edges and the
-/// upright ones from slice k - 1.
+/// Order: the flat edges of slice 0; then for each slice k > 0 its flat edges and the upright ones from slice
+/// k - 1. Flat edges row by row, those along x before those along y.
 class CutNumbers {
  public:
   CutNumbers(const SignBits& bits, std::size_t ny, std::size_t nz)
       : bits_(bits),
         ny_(ny),
         nz_(nz),
-        flat_(ny * nz, 0),
-        upright_(ny * nz, 0),
-        flat_end_(nz),
-        upright_end_(nz) {
-    const auto rows = static_cast<std::ptrdiff_t>(ny * nz);
-    parallel_chunks(rows, detail::rows_a_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      for (auto r = static_cast<std::size_t>(begin); r < static_cast<std::size_t>(end); ++r) {
-        const std::size_t j = r % ny_, k = r / ny_;
-        const bool here = bits_.any(j, k);
-        if (!here && !(j + 1 < ny_ && bits_.any(j + 1, k)) && !(k + 1 < nz_ && bits_.any(j, k + 1))) continue;
-        int flat = 0, upright = 0;
-        for (std::size_t w = 0; w < bits_.words(); ++w) {
-          const CutWords cuts = words(w, j, k);
-          if (cuts.x != 0) flat += std::popcount(cuts.x);
-          if (cuts.y != 0) flat += std::popcount(cuts.y);
-          if (cuts.z != 0) upright += std::popcount(cuts.z);
-        }
-        flat_[r] = flat, upright_[r] = upright;
-      }
-    });
-    const auto rank = [&](std::vector<Index>& of, std::vector<Index>& end, std::size_t k) {
-      for (std::size_t r = ny_ * k; r < ny_ * (k + 1); ++r) {
-        const Index n = of[r];
-        of[r] = count_;
-        count_ += n;
-      }
-      end[k] = count_;
-    };
-    rank(flat_, flat_end_, 0);
-    for (std::size_t k = 1; k < nz_; ++k) rank(flat_, flat_end_, k), rank(upright_, upright_end_, k - 1);
+        rows_(std::make_unique_for_overwrite<Starts[]>((ny + 1) * nz)),
+        slice_(nz + 1) {
+    parallel_chunks(static_cast<std::ptrdiff_t>(nz), slices_a_chunk,
+                    [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                      for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+                        count_slice(k);
+                    });
+    for (std::size_t k = 0; k < nz; ++k) {
+      slice_[k].flat = count_;
+      count_ += rows_[(ny_ + 1) * k + ny_].x;
+      slice_[k].upright = count_;  // of the slice before
+      if (k > 0) count_ += rows_[(ny_ + 1) * (k - 1) + ny_].z;
+    }
   }
 
   [[nodiscard]] Index count() const { return count_; }
-  /// The cut edges of a row: numbers first .. end - 1.
-  struct Range {
-    Index first, end;
+
+  /// Numbers of the first cut edges of a row in +x, +y and +z; those of row ny are beyond the slice.
+  struct Starts {
+    Index x, y, z;
   };
-  [[nodiscard]] Range flat(std::size_t j, std::size_t k) const { return range(flat_, flat_end_, j, k); }
-  [[nodiscard]] Range upright(std::size_t j, std::size_t k) const {
-    return range(upright_, upright_end_, j, k);
+  [[nodiscard]] Starts starts(std::size_t j, std::size_t k) const {
+    const Starts& r = rows_[j + (ny_ + 1) * k];
+    const Index flat = slice_[k].flat, upright = k + 1 < nz_ ? slice_[k + 1].upright : count_;
+    return {flat + r.x, flat + r.y, upright + r.z};
   }
 
   [[nodiscard]] CutWords words(std::size_t w, std::size_t j, std::size_t k) const {
@@ -77,31 +63,50 @@ class CutNumbers {
 
   /// Of one cut edge, from node (i, j, k) in +axis.
   [[nodiscard]] Index number(std::size_t axis, std::size_t i, std::size_t j, std::size_t k) const {
-    Index n = axis == 2 ? upright(j, k).first : flat(j, k).first;
+    const Starts s = starts(j, k);
+    Index n = axis == 0 ? s.x : axis == 1 ? s.y : s.z;
     for (std::size_t w = 0; w <= i / detail::word_bits; ++w) {
-      CutWords cuts = words(w, j, k);
-      if (w == i / detail::word_bits) {
-        const std::uint64_t bit = std::uint64_t{1} << i % detail::word_bits, below = bit - 1;
-        if (axis == 1 && (cuts.x & bit) != 0) ++n;
-        cuts.x &= below, cuts.y &= below, cuts.z &= below;
-      }
-      n += axis == 2 ? std::popcount(cuts.z) : std::popcount(cuts.x) + std::popcount(cuts.y);
+      const CutWords cuts = words(w, j, k);
+      std::uint64_t word = axis == 0 ? cuts.x : axis == 1 ? cuts.y : cuts.z;
+      if (w == i / detail::word_bits) word &= (std::uint64_t{1} << i % detail::word_bits) - 1;
+      if (word != 0) n += detail::bits_set(word);
     }
     return n;
   }
 
  private:
-  [[nodiscard]] Range range(const std::vector<Index>& first, const std::vector<Index>& end, std::size_t j,
-                            std::size_t k) const {
-    const std::size_t r = j + ny_ * k;
-    return {first[r], j + 1 < ny_ ? first[r + 1] : end[k]};
+  static constexpr std::ptrdiff_t slices_a_chunk = 4;
+
+  struct SliceStarts {
+    Index flat, upright;
+  };
+
+  /// Starts of the rows of a slice as if it were the first.
+  void count_slice(std::size_t k) {
+    Starts* row = rows_.get() + (ny_ + 1) * k;
+    Index flat = 0, upright = 0;
+    for (std::size_t j = 0; j < ny_; ++j) {
+      unsigned sides = bits_.sides(j, k);
+      if (j + 1 < ny_) sides |= bits_.sides(j + 1, k);
+      if (k + 1 < nz_) sides |= bits_.sides(j, k + 1);
+      int x = 0, y = 0, z = 0;
+      if (sides == SignBits::both_sides)
+        for (std::size_t w = 0; w < bits_.words(); ++w) {
+          const CutWords cuts = words(w, j, k);
+          if ((cuts.x | cuts.y | cuts.z) == 0) continue;
+          x += detail::bits_set(cuts.x), y += detail::bits_set(cuts.y), z += detail::bits_set(cuts.z);
+        }
+      row[j] = {flat, flat + x, upright};
+      flat += x + y, upright += z;
+    }
+    row[ny_] = {flat, flat, upright};
   }
 
   const SignBits& bits_;
   std::size_t ny_, nz_;
   Index count_ = 0;
-  std::vector<Index> flat_, upright_;          // number of the first cut edge of a row
-  std::vector<Index> flat_end_, upright_end_;  // beyond the last of a slice
+  std::unique_ptr<Starts[]> rows_;  // ny + 1 a slice, without what comes before the slice
+  std::vector<SliceStarts> slice_;  // flat: of the slice; upright: of the slice before
 };
 
 }  // namespace tunica::meshing

@@ -11,18 +11,17 @@
 #include "tunica/meshing/contour.hpp"
 #include "tunica/meshing/cut_numbers.hpp"
 #include "tunica/meshing/marching_caps.hpp"
-#include "tunica/meshing/marching_cubes_table.hpp"
+#include "tunica/meshing/marching_cells.hpp"
+#include "tunica/meshing/marching_triangles.hpp"
 #include "tunica/meshing/sign_bits.hpp"
 
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace tunica::meshing {
@@ -40,41 +39,6 @@ namespace detail {
   if (!(t > least_cut)) return least_cut;  // NaN too
   return t < 1 - least_cut ? t : 1 - least_cut;
 }
-
-/// The cells of a row that the contour passes: 64 at a time, those whose corners are not all alike.
-class CellRow {
- public:
-  CellRow(const SignBits& bits, std::size_t j, std::size_t k)
-      : bits_(bits), row_{bits.row(j, k), bits.row(j + 1, k), bits.row(j, k + 1), bits.row(j + 1, k + 1)} {}
-
-  /// visit(i, case) for each.
-  template <class Visit>
-  void for_each(Visit&& visit) const {
-    for (std::size_t w = 0; w < bits_.words(); ++w) {
-      const std::array<std::uint64_t, 4> low{row_[0][w], row_[1][w], row_[2][w], row_[3][w]};
-      const std::uint64_t any = low[0] | low[1] | low[2] | low[3], all = low[0] & low[1] & low[2] & low[3];
-      if (any == 0 && (w + 1 == bits_.words() ||
-                       ((row_[0][w + 1] | row_[1][w + 1] | row_[2][w + 1] | row_[3][w + 1]) & 1U) == 0))
-        continue;
-      std::array<std::uint64_t, 4> high{};
-      for (std::size_t r = 0; r < 4; ++r) high[r] = bits_.next(row_[r], w);
-      std::uint64_t mixed =
-          ((any | high[0] | high[1] | high[2] | high[3]) & ~(all & high[0] & high[1] & high[2] & high[3])) &
-          bits_.with_next(w);
-      for (; mixed != 0; mixed &= mixed - 1) {
-        const auto n = static_cast<unsigned>(std::countr_zero(mixed));
-        unsigned signs = 0;  // corner (x, y, z) is bit x + 2 y + 4 z
-        for (unsigned r = 0; r < 4; ++r)
-          signs |= static_cast<unsigned>((low[r] >> n & 1U) | (high[r] >> n & 1U) << 1U) << 2 * r;
-        visit(word_bits * w + n, signs);
-      }
-    }
-  }
-
- private:
-  const SignBits& bits_;
-  std::array<const std::uint64_t*, 4> row_;
-};
 
 /// All cut edges and triangles are counted first, so that each row knows where its own go: rows are filled in
 /// slabs of slices, on any number of threads, to the same bits.
@@ -96,7 +60,15 @@ class MarchingSweep {
   [[nodiscard]] Contour run() {
     Contour result;
     mesh::Surface& s = result.surface;
-    const std::vector<Index> first = triangles_before();
+    const std::ptrdiff_t layers = static_cast<std::ptrdiff_t>(nz_ - 1);
+    const std::ptrdiff_t slab = (layers - 1) / thread_count() + 1;
+    std::vector<MarchingCells> cells(static_cast<std::size_t>((layers + slab - 1) / slab));
+    parallel_chunks(layers, slab, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      cells[static_cast<std::size_t>(begin / slab)] =
+          MarchingCells(bits_, nx_, ny_, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+    });
+    std::vector<Index> first(1, 0);  // triangle of a slab
+    for (const MarchingCells& c : cells) first.push_back(first.back() + c.triangles());
     const Index wall = first.back();
     Index nodes = cuts_.count(), triangles = wall;
     if (caps_) {
@@ -106,127 +78,83 @@ class MarchingSweep {
     s.nodes.resize(3, nodes), s.cells.resize(3, triangles);
     s.region.assign(static_cast<std::size_t>(triangles), 0);
     s.region_names.emplace_back("wall");
-    const std::ptrdiff_t slab = static_cast<std::ptrdiff_t>(nz_ - 2) / thread_count() + 1;  // slices
-    parallel_chunks(static_cast<std::ptrdiff_t>(nz_ - 1), slab,
-                    [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                      fill(static_cast<std::size_t>(begin), static_cast<std::size_t>(end), first, s);
-                    });
+    parallel_chunks(layers, slab, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      const auto c = static_cast<std::size_t>(begin / slab);
+      fill(static_cast<std::size_t>(begin), static_cast<std::size_t>(end), cells[c],
+           {s.cells.data() + 3 * std::ptrdiff_t{first[c]}, s.cells.data() + 3 * std::ptrdiff_t{first[c + 1]}},
+           s.nodes.data());
+    });
     if (caps_) add_caps(wall, result);
     return result;
   }
 
  private:
-  /// Numbers of the cut edges at the nodes of a slice, valid where an edge is cut.
-  struct SliceNumbers {
-    std::array<std::unique_ptr<Index[]>, 3> of;
-    explicit SliceNumbers(std::size_t n) {
-      for (auto& o : of) o = std::make_unique_for_overwrite<Index[]>(n);
-    }
-  };
-
-  [[nodiscard]] std::vector<Index> triangles_before() const {
-    const auto& table = marching_table();
-    const std::size_t rows = (ny_ - 1) * (nz_ - 1);
-    std::vector<Index> first(rows + 1, 0);
-    parallel_chunks(
-        static_cast<std::ptrdiff_t>(rows), rows_a_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-          for (auto r = static_cast<std::size_t>(begin); r < static_cast<std::size_t>(end); ++r) {
-            Index count = 0;
-            CellRow(bits_, r % (ny_ - 1), r / (ny_ - 1)).for_each([&](std::size_t, unsigned signs) {
-              count += table[signs].count;
-            });
-            first[r + 1] = count;
-          }
-        });
-    for (std::size_t r = 0; r < rows; ++r) first[r + 1] += first[r];
-    return first;
-  }
-
   /// The slabs of cells from slice begin to slice end; the flat cuts of slice begin are another's, but of 0.
-  void fill(std::size_t begin, std::size_t end, const std::vector<Index>& first, mesh::Surface& s) const {
-    SliceNumbers lower(nx_ * ny_), upper(nx_ * ny_);
-    double* nodes = s.nodes.data();
-    flat(begin, lower, begin == 0 ? nodes : nullptr);
+  void fill(std::size_t begin, std::size_t end, const MarchingCells& cells, std::span<Index> triangles,
+            double* nodes) const {
+    const MarchingSteps& steps = marching_steps();
+    const std::uint8_t* signs = cells.signs();
+    const Index* in_row = cells.in_row();
+    Index* out = triangles.data();
+    const Index* limit = out + triangles.size();
+    if (begin == 0) flat(0, nodes);
     for (std::size_t k = begin; k < end; ++k) {
-      flat(k + 1, upper, nodes);
-      upright(k, lower, nodes);
-      for (std::size_t j = 0; j + 1 < ny_; ++j) {
-        const std::size_t row = j + (ny_ - 1) * k;
-        if (first[row] < first[row + 1])
-          cells(j, k, lower, upper, s.cells.data() + 3 * std::ptrdiff_t{first[row]});
-      }
-      std::swap(lower, upper);
-    }
-  }
-
-  /// Numbers the cut edges within slice k, and writes where they are cut unless nodes is null.
-  void flat(std::size_t k, SliceNumbers& numbers, double* nodes) const {
-    for (std::size_t j = 0; j < ny_; ++j) {
-      auto [number, end] = cuts_.flat(j, k);
-      if (number == end) continue;
-      const T* v = image_.values.data() + nx_ * (j + ny_ * k);
-      for (std::size_t w = 0; w < bits_.words(); ++w) {
-        const CutWords cut = cuts_.words(w, j, k);
-        for (std::uint64_t some = cut.x | cut.y; some != 0; some &= some - 1) {
-          const auto n = static_cast<unsigned>(std::countr_zero(some));
-          const std::size_t i = word_bits * w + n, at = i + nx_ * j;
-          const bool inside = (bits_.row(j, k)[w] >> n & 1U) != 0;
-          if ((cut.x >> n & 1U) != 0) {
-            if (nodes) place(nodes, number, {i, j, k}, 0, inside, v[i], v[i + 1]);
-            numbers.of[0][at] = number++;
-          }
-          if ((cut.y >> n & 1U) != 0) {
-            if (nodes) place(nodes, number, {i, j, k}, 1, inside, v[i], v[i + nx_]);
-            numbers.of[1][at] = number++;
-          }
-        }
+      flat(k + 1, nodes);
+      upright(k, nodes);
+      for (std::size_t j = 0; j + 1 < ny_; ++j, ++in_row) {
+        if (*in_row == 0) continue;
+        const auto a = cuts_.starts(j, k), b = cuts_.starts(j + 1, k), c = cuts_.starts(j, k + 1),
+                   d = cuts_.starts(j + 1, k + 1);
+        out = write_triangles(signs, *in_row, {a.x, b.x, c.x, d.x, a.y, c.y, a.z, b.z}, steps, out, limit);
+        signs += *in_row;
       }
     }
   }
 
-  /// The same of the cut edges from slice k to the next.
-  void upright(std::size_t k, SliceNumbers& numbers, double* nodes) const {
+  /// Where the edges within slice k are cut.
+  void flat(std::size_t k, double* nodes) const {
     for (std::size_t j = 0; j < ny_; ++j) {
-      auto [number, end] = cuts_.upright(j, k);
-      if (number == end) continue;
-      const T* v = image_.values.data() + nx_ * (j + ny_ * k);
-      for (std::size_t w = 0; w < bits_.words(); ++w)
-        for (std::uint64_t cut = cuts_.words(w, j, k).z; cut != 0; cut &= cut - 1) {
-          const auto n = static_cast<unsigned>(std::countr_zero(cut));
-          const std::size_t i = word_bits * w + n;
-          place(nodes, number, {i, j, k}, 2, (bits_.row(j, k)[w] >> n & 1U) != 0, v[i], v[i + nx_ * ny_]);
-          numbers.of[2][i + nx_ * j] = number++;
-        }
+      const auto here = cuts_.starts(j, k), next = cuts_.starts(j + 1, k);
+      if (here.x < here.y) place<0>(j, k, nodes + 3 * std::ptrdiff_t{here.x});
+      if (here.y < next.x) place<1>(j, k, nodes + 3 * std::ptrdiff_t{here.y});
     }
   }
 
-  /// The cut of the edge from node (i, j, k) in +axis, p and q the values at its ends.
-  void place(double* nodes, Index number, const std::array<std::size_t, 3>& at, std::size_t axis,
-             bool first_inside, T p, T q) const {
-    double* x = nodes + 3 * std::ptrdiff_t{number};
-    for (std::size_t a = 0; a < 3; ++a) x[a] = image_.axes[a][at[a]];
-    const double lo = x[axis], hi = image_.axes[axis][at[axis] + 1];
-    const auto from = static_cast<double>(p), to = static_cast<double>(q);
-    x[axis] = first_inside ? lo + cut_fraction(from, to, iso_) * (hi - lo)
-                           : hi - cut_fraction(to, from, iso_) * (hi - lo);
+  /// Where the edges from slice k to the next are cut.
+  void upright(std::size_t k, double* nodes) const {
+    for (std::size_t j = 0; j < ny_; ++j) {
+      const Index here = cuts_.starts(j, k).z;
+      if (here < cuts_.starts(j + 1, k).z) place<2>(j, k, nodes + 3 * std::ptrdiff_t{here});
+    }
   }
 
-  /// The triangles of the cells (., j, k), three numbers each.
-  void cells(std::size_t j, std::size_t k, const SliceNumbers& lower, const SliceNumbers& upper,
-             Index* triangles) const {
-    const auto& table = marching_table();
-    std::array<const Index*, 12> number;  // edge 4a + u + 2v of a cell has offsets u, v along axes a+1, a+2
-    for (std::size_t e = 0; e < 12; ++e) {
-      const std::size_t a = e / 4;
-      std::array<std::size_t, 3> offset{};
-      offset[(a + 1) % 3] = e % 4 & 1U, offset[(a + 2) % 3] = e % 4 >> 1U;
-      number[e] = (offset[2] == 0 ? lower : upper).of[a].get() + offset[0] + nx_ * (j + offset[1]);
+  /// The cuts of a row in +axis, one after the other.
+  template <std::size_t axis>
+  void place(std::size_t j, std::size_t k, double* x) const {
+    const std::array<std::size_t, 3> stride{1, nx_, nx_ * ny_};
+    const T* v = image_.values.data() + nx_ * (j + ny_ * k);
+    const double* along = image_.axes[0].data();
+    const double y = image_.axes[1][j], z = image_.axes[2][k];
+    [[maybe_unused]] const double high = axis == 1   ? image_.axes[1][j + 1]
+                                         : axis == 2 ? image_.axes[2][k + 1]
+                                                     : 0;
+    const std::uint64_t* row = bits_.row(j, k);
+    for (std::size_t w = 0; w < bits_.words(); ++w) {
+      std::uint64_t cut = 0;
+      if constexpr (axis == 0) cut = (row[w] ^ bits_.next(row, w)) & bits_.with_next(w);
+      if constexpr (axis == 1) cut = row[w] ^ bits_.row(j + 1, k)[w];
+      if constexpr (axis == 2) cut = row[w] ^ bits_.row(j, k + 1)[w];
+      for (; cut != 0; cut &= cut - 1, x += 3) {
+        const auto n = static_cast<unsigned>(std::countr_zero(cut));
+        const std::size_t i = word_bits * w + n;
+        const bool inside = (row[w] >> n & 1U) != 0;
+        const auto p = static_cast<double>(v[i]), q = static_cast<double>(v[i + stride[axis]]);
+        x[0] = along[i], x[1] = y, x[2] = z;
+        const double lo = x[axis], hi = axis == 0 ? along[i + 1] : high;
+        const double t = cut_fraction(inside ? p : q, inside ? q : p, iso_);
+        x[axis] = (inside ? lo : hi) + t * (inside ? hi - lo : lo - hi);
+      }
     }
-    CellRow(bits_, j, k).for_each([&](std::size_t i, unsigned signs) {
-      const MarchingCase& c = table[signs];
-      for (std::size_t t = 0; t < static_cast<std::size_t>(c.count); ++t)
-        for (const std::int8_t e : c.triangle[t]) *triangles++ = number[static_cast<std::size_t>(e)][i];
-    });
   }
 
   void add_caps(Index triangle, Contour& result) const {

@@ -13,9 +13,9 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <span>
 #include <type_traits>
-#include <vector>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -66,6 +66,17 @@ inline constexpr std::ptrdiff_t rows_a_chunk = 256;
   return word;
 }
 
+/// How many bits are set; quick without an instruction for it.
+[[nodiscard]] inline int bits_set(std::uint64_t word) {
+#if defined(__POPCNT__)
+  return std::popcount(word);
+#else
+  word -= word >> 1U & 0x5555555555555555U;
+  word = (word & 0x3333333333333333U) + (word >> 2U & 0x3333333333333333U);
+  return static_cast<int>(((word + (word >> 4U)) & 0x0f0f0f0f0f0f0f0fU) * 0x0101010101010101U >> 56U);
+#endif
+}
+
 /// Bits from the tests of so many values at a time.
 template <unsigned lanes, class T, class Test>
 [[nodiscard]] std::uint64_t word_of(const T* v, Test&& test) {
@@ -74,13 +85,28 @@ template <unsigned lanes, class T, class Test>
   return word;
 }
 
-/// Bit n: v[n] >= least, of 64 values.
+/// Bit n: v[n] >= least, of 64 values. What a row of words ahead will need is called for from memory, beyond
+/// the end of a page too, where the machine itself would not look ahead.
 template <class T>
 [[nodiscard]] std::uint64_t word_reaching(const T* v, T least) {
 #if defined(__SSE2__)
+  constexpr std::size_t line = 64, ahead = 3072;  // [B]
+  for (std::size_t b = 0; b < word_bits * sizeof(T); b += line)
+    _mm_prefetch(reinterpret_cast<const char*>(reinterpret_cast<std::uintptr_t>(v) + ahead + b), _MM_HINT_T0);
   if constexpr (std::is_same_v<T, float>)
-    return word_of<4>(v, [bound = _mm_set1_ps(least)](const float* four) {
-      return _mm_movemask_ps(_mm_cmpge_ps(_mm_loadu_ps(four), bound));
+    return word_of<16>(v, [bound = _mm_set1_ps(least)](const float* sixteen) {
+      const auto four = [&](std::size_t n) {
+        return _mm_castps_si128(_mm_cmpge_ps(_mm_loadu_ps(sixteen + n), bound));
+      };
+      return static_cast<unsigned>(_mm_movemask_epi8(
+          _mm_packs_epi16(_mm_packs_epi32(four(0), four(4)), _mm_packs_epi32(four(8), four(12)))));
+    });
+  if constexpr (std::is_same_v<T, std::int16_t>)
+    return ~word_of<16>(v, [bound = _mm_set1_epi16(least)](const std::int16_t* sixteen) {
+      const auto eight = [&](std::size_t n) {
+        return _mm_cmplt_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(sixteen + n)), bound);
+      };
+      return static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(eight(0), eight(8))));
     });
   if constexpr (std::is_same_v<T, double>)
     return word_of<2>(v, [bound = _mm_set1_pd(least)](const double* two) {
@@ -92,12 +118,12 @@ template <class T>
   return packed(bytes);
 }
 
-/// The same of fewer values.
+/// The same of the last count values, fewer than 64, of a row that ends at `end` and has size values.
 template <class T>
-[[nodiscard]] std::uint64_t word_reaching(const T* v, T least, std::size_t count) {
-  if (count == word_bits) return word_reaching(v, least);
+[[nodiscard]] std::uint64_t last_word_reaching(const T* end, T least, std::size_t count, std::size_t size) {
+  if (size >= word_bits) return word_reaching(end - word_bits, least) >> (word_bits - count);
   std::uint64_t word = 0;
-  for (std::size_t n = 0; n < count; ++n) word |= std::uint64_t{v[n] >= least} << n;
+  for (std::size_t n = 0; n < count; ++n) word |= std::uint64_t{end[n - count] >= least} << n;
   return word;
 }
 
@@ -112,35 +138,34 @@ class SignBits {
       : nx_(image.axes[0].size()),
         ny_(image.axes[1].size()),
         words_((nx_ + detail::word_bits - 1) / detail::word_bits),
-        bits_(words_ * ny_ * image.axes[2].size(), 0),
-        any_(ny_ * image.axes[2].size(), 0) {
+        rows_(ny_ * image.axes[2].size()),
+        bits_(std::make_unique_for_overwrite<std::uint64_t[]>(words_ * rows_)),
+        sides_(std::make_unique_for_overwrite<std::uint8_t[]>(rows_)) {
     const Reach<T> reach(iso);
-    if (reach.none) return;
-    const auto rows = static_cast<std::ptrdiff_t>(ny_ * image.axes[2].size());
-    parallel_chunks(rows, detail::rows_a_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      for (auto r = static_cast<std::size_t>(begin); r < static_cast<std::size_t>(end); ++r)
-        for (std::size_t w = 0; w < words_; ++w) {
-          const std::size_t first = nx_ * r + detail::word_bits * w;
-          const std::size_t count = std::min(detail::word_bits, nx_ - detail::word_bits * w);
-          std::uint64_t word = detail::word_reaching(image.values.data() + first, reach.least, count);
-          if (word != 0 && !kept.empty())
-            word &= detail::word_reaching(kept.data() + first, std::uint8_t{1}, count);
-          bits_[words_ * r + w] = word;
-          if (word != 0) any_[r] = 1;
-        }
-    });
+    parallel_chunks(static_cast<std::ptrdiff_t>(rows_), detail::rows_a_chunk,
+                    [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                      for (auto r = static_cast<std::size_t>(begin); r < static_cast<std::size_t>(end); ++r)
+                        set_row(r, image.values.data() + nx_ * r,
+                                kept.empty() ? nullptr : kept.data() + nx_ * r, reach);
+                    });
   }
 
   [[nodiscard]] std::size_t words() const { return words_; }  // a row
   [[nodiscard]] const std::uint64_t* row(std::size_t j, std::size_t k) const {
-    return bits_.data() + words_ * (j + ny_ * k);
+    return bits_.get() + words_ * (j + ny_ * k);
   }
   [[nodiscard]] bool inside(std::size_t i, std::size_t j, std::size_t k) const {
     return (row(j, k)[i / detail::word_bits] >> i % detail::word_bits & 1U) != 0;
   }
   /// Some node of the row is inside; some node of all.
-  [[nodiscard]] bool any(std::size_t j, std::size_t k) const { return any_[j + ny_ * k] != 0; }
-  [[nodiscard]] bool any() const { return std::find(any_.begin(), any_.end(), 1) != any_.end(); }
+  [[nodiscard]] bool any(std::size_t j, std::size_t k) const { return (sides(j, k) & some_inside) != 0; }
+  [[nodiscard]] bool any() const {
+    return std::any_of(sides_.get(), sides_.get() + rows_,
+                       [](std::uint8_t s) { return (s & some_inside) != 0; });
+  }
+  /// On which sides of the surface the nodes of a row are.
+  static constexpr std::uint8_t some_inside = 1, some_outside = 2, both_sides = some_inside | some_outside;
+  [[nodiscard]] std::uint8_t sides(std::size_t j, std::size_t k) const { return sides_[j + ny_ * k]; }
 
   /// Word w of a row moved down by a node: bit n is that of node n + 1.
   [[nodiscard]] std::uint64_t next(const std::uint64_t* row, std::size_t w) const {
@@ -153,9 +178,35 @@ class SignBits {
   }
 
  private:
-  std::size_t nx_, ny_, words_;
-  std::vector<std::uint64_t> bits_;
-  std::vector<std::uint8_t> any_;  // of a row
+  template <class T>
+  void set_row(std::size_t r, const T* values, const std::uint8_t* kept, const Reach<T>& reach) {
+    std::uint64_t* row = bits_.get() + words_ * r;
+    std::uint64_t inside = 0, outside = 0;
+    const auto set = [&](std::size_t w, std::uint64_t word, std::uint64_t all) {
+      if (reach.none) word = 0;
+      row[w] = word;
+      inside |= word, outside |= word ^ all;
+    };
+    const std::size_t full = nx_ / detail::word_bits, rest = nx_ % detail::word_bits;
+    for (std::size_t w = 0; w < full; ++w) {
+      std::uint64_t word = detail::word_reaching(values + detail::word_bits * w, reach.least);
+      if (kept != nullptr && word != 0)
+        word &= detail::word_reaching(kept + detail::word_bits * w, std::uint8_t{1});
+      set(w, word, ~std::uint64_t{0});
+    }
+    if (rest != 0) {
+      std::uint64_t word = detail::last_word_reaching(values + nx_, reach.least, rest, nx_);
+      if (kept != nullptr && word != 0)
+        word &= detail::last_word_reaching(kept + nx_, std::uint8_t{1}, rest, nx_);
+      set(full, word, (std::uint64_t{1} << rest) - 1);
+    }
+    sides_[r] =
+        static_cast<std::uint8_t>((inside != 0 ? some_inside : 0) | (outside != 0 ? some_outside : 0));
+  }
+
+  std::size_t nx_, ny_, words_, rows_;
+  std::unique_ptr<std::uint64_t[]> bits_;  // not touched before they are known
+  std::unique_ptr<std::uint8_t[]> sides_;  // of a row
 };
 
 }  // namespace tunica::meshing
