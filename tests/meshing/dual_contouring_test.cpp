@@ -3,6 +3,7 @@
 #include "tunica/meshing/dual_contouring.hpp"
 
 #include "support/contours.hpp"
+#include "tunica/core/parallel.hpp"
 #include "tunica/mesh/measures.hpp"
 #include "tunica/meshing/cell_loops.hpp"
 #include "tunica/meshing/contour_triangles.hpp"
@@ -15,9 +16,11 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -100,6 +103,71 @@ TEST_SUITE("unit") {
         CHECK(degenerate == 0);
         CHECK(test::contours::enclosed_volume(quads) > 0);
       }
+  }
+
+  TEST_CASE("meshing: the sweep over an image is the dual contouring of its Hermite data") {
+    // balls at a corner and across the middle, a mask that parts them, steps of uneven length, and noise
+    auto ball = test::contours::sampled(20, [](const Vec3& x) {
+      return std::max(0.42 - (x - Vec3(0.9, 0.5, 0.1)).norm(), 0.31 - (x - Vec3(0.4, 0.4, 0.6)).norm());
+    });
+    for (std::size_t a = 0; a < 3; ++a)
+      for (double& x : ball.axes[a]) x = x * (1 + 0.3 * static_cast<double>(a) * x) - 7;
+    std::vector<std::uint8_t> mask(ball.values.size(), 1);
+    for (std::size_t v = 0; v < mask.size(); v += 7) mask[v] = 0;
+    const auto noise = test::contours::noise(14, false, 5);
+    const auto wide = test::contours::noise(70, false, 6);  // rows of more than one word
+    const auto compare = [](const auto& im, const std::vector<std::uint8_t>& kept, double hold) {
+      const auto general = meshing::dual_contour(meshing::hermite_of_image(im, kept, 0), {.hold = hold});
+      const auto swept = meshing::dual_contour_quads(im, kept, 0, {.hold = hold, .smooth_share = 1});
+      CHECK(swept.cells == general.cells);
+      CHECK(swept.region == general.region);
+      CHECK(swept.region_names == general.region_names);
+      REQUIRE(swept.node_count() == general.node_count());
+      Index apart = 0;
+      for (Index v = 0; v < swept.node_count(); ++v) {
+        const bool same = (swept.nodes.col(v) - general.nodes.col(v)).norm() < 1e-10;
+        bool border = false;  // where the plane comes first for the sweep, last for the general way
+        for (int a = 0; a < 3; ++a)
+          border |= swept.nodes(a, v) == im.axes[static_cast<std::size_t>(a)].front() ||
+                    swept.nodes(a, v) == im.axes[static_cast<std::size_t>(a)].back();
+        apart += !same && !border;
+      }
+      CHECK(apart == 0);
+    };
+    compare(ball, {}, 1e-3);
+    compare(ball, mask, 1e-3);
+    compare(noise, {}, 1e-3);
+    compare(wide, {}, 0.1);
+  }
+
+  TEST_CASE("meshing: dual contouring has the same bits on any number of threads") {
+    const auto im = test::contours::noise(40, true, 3);
+    const auto one = meshing::dual_contour_image(im, {}, 0);
+    thread_count() = 3;
+    const auto three = meshing::dual_contour_image(im, {}, 0);
+    thread_count() = 1;
+    CHECK(one.surface.nodes == three.surface.nodes);
+    CHECK(one.surface.cells == three.surface.cells);
+    CHECK(one.surface.region == three.surface.region);
+  }
+
+  TEST_CASE("meshing: vertices of dual contouring lie within their cells and nowhere twice") {
+    for (const bool integers : {false, true}) {
+      const auto im = test::contours::noise(24, integers, 11);
+      const auto surface = meshing::dual_contour_image(im, {}, 0).surface;
+      std::set<std::array<double, 3>> places;
+      Index on_a_side = 0;
+      for (Index v = 0; v < surface.node_count(); ++v) {
+        const Vec3 x = surface.nodes.col(v);
+        places.insert({x[0], x[1], x[2]});
+        for (int a = 0; a < 3; ++a) {
+          const double t = x[a] * 23;
+          on_a_side += std::abs(t - std::round(t)) < 0.9e-3;
+        }
+      }
+      CHECK(on_a_side == 0);
+      CHECK(static_cast<Index>(places.size()) == surface.node_count());
+    }
   }
 
   TEST_CASE("meshing: dual contouring closes a region at the border of the image in flat parts") {

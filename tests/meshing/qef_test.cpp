@@ -2,6 +2,8 @@
 // The quadratic error function: planes stay, edges and corners are found, noise does no harm.
 #include "tunica/meshing/qef.hpp"
 
+#include "tunica/meshing/least_error.hpp"
+
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
@@ -111,5 +113,35 @@ TEST_SUITE("unit") {
     outside.add({2, 0.5, 0.5}, {1, 0, 0}), outside.add({0.5, 0.25, 0.5}, {0, 1, 0});
     const auto held = outside.minimum_in(box);
     CHECK((held.position - Vec3(1, 0.25, 0.5)).norm() < 1e-15);
+  }
+
+  TEST_CASE("meshing: the closed form of the least error is that of the eigenvectors") {
+    Random random;
+    const Box box{Vec3::Zero(), Vec3::Ones()}, wide{Vec3::Constant(-9), Vec3::Constant(9)};
+    double worst = 0;
+    std::array<int, 4> ranks{};
+    for (int trial = 0; trial < 4000; ++trial) {
+      const double bend = trial % 4 == 0 ? 1e-9 : trial % 4 == 1 ? 0.1 : trial % 4 == 2 ? 0.4 : 3.0;
+      const Vec3 n = random.vector(1).normalized();
+      Qef qef;
+      meshing::detail::PlaneSums sums;
+      for (int i = 0; i < 3 + trial % 5; ++i) {
+        const Vec3 p = Vec3::Constant(0.5) + random.vector(0.5), m = (n + random.vector(bend)).normalized();
+        qef.add(p, m), sums.add(p, m);
+      }
+      for (const Box& hold : {wide, box}) {
+        const auto free = qef.minimum_in(hold);
+        ++ranks[static_cast<std::size_t>(free.rank)];
+        worst = std::max(worst, (meshing::detail::least_error(sums, hold, {}) - free.position).norm());
+        // half-way from the mass point on a smooth surface, and nowhere else
+        if (qef.minimum().rank > 1 || (qef.minimum().position - free.position).norm() > 0) continue;
+        const Vec3 half = meshing::detail::least_error(sums, hold, {.smooth = 0.5});
+        CHECK((half - 0.5 * (free.position + qef.mass_point())).norm() < 1e-11);
+      }
+    }
+    MESSAGE("apart by at most ", worst, "; ranks 0 to 3: ", ranks[0], ", ", ranks[1], ", ", ranks[2], ", ",
+            ranks[3]);
+    CHECK(worst < 1e-11);
+    for (const std::size_t r : {1U, 2U, 3U}) CHECK(ranks[r] > 1000);
   }
 }
