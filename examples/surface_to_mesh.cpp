@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // surface_to_mesh: a closed STL surface from anywhere to tetrahedra.
+#include "centre_line_file.hpp"
 #include "cli.hpp"
 #include "flat_ends.hpp"
 #include "json.hpp"
@@ -14,8 +15,10 @@
 #include "tunica/meshing/tetrahedra.hpp"
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 using namespace tunica;
 using namespace tunica::examples;
@@ -37,10 +40,11 @@ void mend(io::StlFile& file, const std::string& name, const meshing::RepairOptio
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string in, out, report_file;
+  std::string in, out, report_file, line_file;
   double edge = 0;
   meshing::RepairOptions repair;
   bool full_repair = false;
+  std::vector<Vec3> blind_ends;
   Cli cli("surface_to_mesh", "Fills a closed surface with tetrahedra, in the unit of the surface.");
   cli.argument("SURFACE.stl", "the surface, text or binary", in);
   cli.option("--edge", "L", "edge length to remesh to (none: the surface is kept as given)",
@@ -57,6 +61,18 @@ int main(int argc, char** argv) {
                repair.hole_edges = number_of<Index>(text);
                if (repair.hole_edges < 0) throw UsageError("must not be negative");
              });
+  cli.option("--centre-line", "FILE.vtp",
+             "the centre lines from the largest flat end to the others, with the radii of inscribed balls\n"
+             "and the sections square to them, in the unit of the surface",
+             line_file);
+  cli.repeated(
+      "--end", "X,Y,Z",
+      "a point within the vessel to which a centre line leads; without flat ends the first is the root",
+      [&](const std::string& text) {
+        const auto x = numbers_of<double>(text);
+        if (x.size() != 3) throw UsageError("\"" + text + "\" is not X,Y,Z");
+        blind_ends.emplace_back(x[0], x[1], x[2]);
+      });
   cli.option("-o", "OUT.vtu", "the tetrahedra; their surface goes to OUT.surface.vtp (the surface's name)",
              out);
   cli.option("--report", "FILE.json", "figures, and elapsed and CPU seconds of each stage", report_file);
@@ -64,6 +80,7 @@ int main(int argc, char** argv) {
   return run_program(cli, argc, argv, [&] {
     const auto volume = mesh_file(out, in);
     expect_outputs(volume, report_file);
+    if (!line_file.empty()) io::expect_writable(line_file);
     Stages stage(4);
     Json report;
     report["warnings"] = Json(std::vector<std::string>{});
@@ -87,12 +104,18 @@ int main(int argc, char** argv) {
       report["remesh"] = remesh_figures(remeshed.report);
     });
     report["surface"] = surface_figures(surface, mesh::topology(surface));
+    std::optional<MeasuredLine> line;
+    if (!line_file.empty()) {
+      line = measured_line(surface, blind_ends);
+      report["centre_line"] = centre_line_figures(*line);
+    }
     const auto filled = stage("fill", [&] { return meshing::tetrahedra(surface); });
     tell_tetrahedra(filled.report, filled.mesh, report);
     OutputFiles files;
     stage("write", [&] {
       files.write(volume, [&](const auto& path) { io::write_vtu(path, filled.mesh); });
       files.write(surface_file(volume), [&](const auto& path) { io::write_vtp(path, surface); });
+      if (line) files.write(line_file, [&](const auto& path) { write_centre_line(path, *line); });
     });
     finish(files, stage, report, report_file);
   });

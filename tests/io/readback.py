@@ -78,6 +78,12 @@ for name, corners, count in (('triangles.vtp', 3, 8), ('quads.vtp', 4, 6)):
     if abs(mass.GetVolume() - (4 / 3 if corners == 3 else 8)) > 1e-6:
         sys.exit('%s: volume %g' % (name, mass.GetVolume()))
 
+lines = read(vtk.vtkXMLPolyDataReader(), 'lines.vtp')
+expect('lines', (lines.GetNumberOfLines(), lines.GetNumberOfCells()), (2, 2))
+expect('lines: points', [lines.GetCell(1).GetPointId(i) for i in range(4)], [5, 4, 3, 2])
+expect('lines: radius', array(lines.GetPointData(), 'radius'), np.arange(1, 7) / 2)
+expect('lines: parent', array(lines.GetCellData(), 'parent'), [-1, 0])
+
 surface = read(vtk.vtkSTLReader(), 'octahedron.stl')
 expect('stl facets', surface.GetNumberOfCells(), 8)
 expect('stl points', surface.GetNumberOfPoints(), 6)

@@ -6,6 +6,7 @@
 #include "tunica/io/vtk_image_write.hpp"
 #include "tunica/io/vtk_xml.hpp"
 #include "tunica/io/vtp.hpp"
+#include "tunica/io/vtp_lines.hpp"
 #include "tunica/io/vtu.hpp"
 #ifdef TUNICA_WITH_ZLIB
 #include "tunica/io/zlib.hpp"
@@ -142,6 +143,11 @@ TEST_SUITE("unit") {
 #endif
     write_surface("triangles.vtp", octahedron());
     write_surface("quads.vtp", cube());
+    const mesh::Rows two_lines{{0, 2, 6}, {0, 1, 5, 4, 3, 2}};
+    const std::vector<double> radius{0.5, 1, 1.5, 2, 2.5, 3};
+    const std::vector<Index> parent{-1, 0};
+    io::write_vtp_lines(folder() / "lines.vtp", octahedron().nodes, two_lines,
+                        {.points = {{"radius", radius}}, .cells = {{"parent", parent}}});
     io::write_stl(folder() / "octahedron.stl", octahedron());
     io::Pvd series(folder() / "series.pvd");
     for (int i = 0; i < 3; ++i) series.add(0.1 * i, "tets.vtu");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -129,6 +130,40 @@ TEST_SUITE("job") {
     CHECK(folder.files().empty());
   }
 
+  TEST_CASE("surface_to_mesh: centre lines lead to the ends of the vessel") {
+    const auto lumen = shared("data/lumen_iso1299.5_clipped.stl"),
+               level_set = shared("data/vmtk_levelset_surface.stl");
+    if (!lumen || !level_set || program("surface_to_mesh").empty()) return;
+    const Folder folder;
+    const auto o = fill(folder, *lumen, " --edge 2 --centre-line c.vtp");
+    INFO(o.err);
+    REQUIRE(o.status == 0);
+    CHECK(folder.files() == std::set<std::string>{"a.vtu", "a.surface.vtp", "c.vtp", "r.json"});
+    const std::string report = text_of(folder.path() / "r.json");
+    CHECK(has(report, "\"root\": \"flat 1\""));
+    for (const std::string end : {"flat 2", "flat 3"}) {
+      const std::string branch = report.substr(report.find("\"end\": \"" + end + "\""));
+      MESSAGE(end, ": ", figure(branch, {"length"}), " mm, radius from ", figure(branch, {"least_radius"}),
+              " to ", figure(branch, {"largest_radius"}));
+      CHECK(figure(branch, {"length"}) > 45);  // the fork is some 25 mm below the inlet, the ends at 70
+      CHECK(figure(branch, {"length"}) < 56);
+      CHECK(figure(branch, {"least_radius"}) > 3.2);  // of equal area: 4.14 and 3.91
+      CHECK(figure(branch, {"least_radius"}) < 4.14);
+    }
+    const Folder blind;  // this one has no flat ends
+    const auto none = fill(blind, *level_set, " --edge 2 --centre-line c.vtp");
+    CHECK(none.status == 1);
+    CHECK(has(none.err, "error: a centre line needs two ends or more"));
+    CHECK(blind.files().empty());
+    const auto two = fill(blind, *level_set,
+                          " --edge 2 --centre-line c.vtp --end 222.1,175.87,21.67 --end 234.35,101.3,29");
+    CHECK(two.status == 0);
+    const double length = figure(text_of(blind.path() / "r.json"), {"centre_line", "length"});
+    MESSAGE("between two blind ends: ", length, " mm");
+    CHECK(length > 76);  // of the straight line
+    CHECK(length < 1.1 * 76);
+  }
+
   TEST_CASE("surface_to_mesh: every bad surface ends with its sentence and leaves no file") {
     const auto bad = shared("data/bad");
     if (!bad || program("surface_to_mesh").empty()) return;
@@ -154,6 +189,7 @@ TEST_SUITE("job") {
     refused("s00_control_closed.stl", " --edge 0", 2, "--edge: must be more than 0");
     refused("s02_open_hole.stl", " --fill-holes 100", 1, "1 boundary loop: 11 edges around (");
     refused("s00_control_closed.stl", " --repair --fill-holes -1", 2, "--fill-holes: must not be negative");
+    refused("s00_control_closed.stl", " --centre-line c.vtp --end 1,2", 2, "\"1,2\" is not X,Y,Z");
     refused("s00_control_closed.stl", " --egde 2", 2, "did you mean --edge?");
     refused("s00_control_closed.stl", " another.stl", 2, "unexpected argument \"another.stl\"");
   }

@@ -37,6 +37,9 @@ struct Section {
   double nearest = 0;            // distance of the part from the point of the plane: 0 where it covers it
   double farthest = 0;           // of its outer loop
   Vec3 centre{0, 0, 0};          // mean of the points of the outer loop
+  double area = 0;               // without its holes
+  double perimeter = 0;          // of all its loops
+  Vec3 centroid{0, 0, 0};        // of its area
 };
 
 namespace detail {
@@ -61,6 +64,23 @@ struct SectionLoop {
       d = std::min(d, std::hypot(a[0] + t * ex, a[1] + t * ey));
     }
     return d;
+  }
+  /// Moments of the inside: area and area times centroid, signed by the turn of the loop.
+  struct Moments {
+    double area = 0, x = 0, y = 0;
+  };
+  [[nodiscard]] Moments moments() const {
+    Moments m;
+    for (const auto& [a, b] : segments) {
+      const double w = 0.5 * (a[0] * b[1] - a[1] * b[0]);
+      m.area += w, m.x += w * (a[0] + b[0]) / 3, m.y += w * (a[1] + b[1]) / 3;
+    }
+    return m;
+  }
+  [[nodiscard]] double length() const {
+    double l = 0;
+    for (const auto& [a, b] : segments) l += std::hypot(b[0] - a[0], b[1] - a[1]);
+    return l;
   }
   [[nodiscard]] double farthest_from_origin() const {
     double d = 0;
@@ -124,14 +144,22 @@ struct SectionLoop {
                  .nearest = loops[i].nearest_to_origin(),
                  .farthest = loops[i].farthest_from_origin()};
     bool covers = loops[i].holds(origin);
+    auto moments = loops[i].moments();
+    part.perimeter = loops[i].length();
     for (std::size_t h = 0; h < loops.size(); ++h) {  // its holes: one level deeper, within it
       if (holders[h].size() != holders[i].size() + 1) continue;
       if (std::find(holders[h].begin(), holders[h].end(), i) == holders[h].end()) continue;
       part.triangles.insert(part.triangles.end(), loops[h].triangles.begin(), loops[h].triangles.end());
       part.nearest = std::min(part.nearest, loops[h].nearest_to_origin());
       covers = covers && !loops[h].holds(origin);
+      const auto hole = loops[h].moments();  // turns the other way
+      moments.area += hole.area, moments.x += hole.x, moments.y += hole.y;
+      part.perimeter += loops[h].length();
     }
     if (covers) part.nearest = 0;
+    part.area = std::abs(moments.area);
+    part.centroid = moments.area != 0 ? frame.place({moments.x / moments.area, moments.y / moments.area})
+                                      : frame.place(loops[i].segments.front()[0]);
     std::sort(part.triangles.begin(), part.triangles.end());
     for (const auto& [a, b] : loops[i].segments)
       part.centre =
