@@ -16,7 +16,9 @@
 #include "tunica/meshing/tetrahedra.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -31,6 +33,7 @@ class LayerOffset {
   LayerOffset(const LayerSheet& sheet, LayerHeights& heights, const std::vector<LayerRim>& rims, int layers)
       : sheet_(sheet), heights_(heights), rims_(rims), layers_(layers), caps_(sheet), inner_(sheet.surface) {
     move_.assign(static_cast<std::size_t>(sheet.surface.node_count()), Vec3(0, 0, 0));
+    find_edges();
   }
 
   /// The number of rounds that it took.
@@ -66,6 +69,11 @@ class LayerOffset {
   [[nodiscard]] const mesh::Surface& inner() const { return inner_; }
 
  private:
+  struct Edge {
+    Index one, other, across;  // its triangles; the node of the second that the first has not
+    double least;              // [rad]
+  };
+
   /// Where none of the nodes has a height left the cause is farther away.
   void give_way(const std::vector<Index>& nodes, double factor) {
     if (!heights_.lower(nodes, factor)) give_way_everywhere(0.5);
@@ -85,7 +93,7 @@ class LayerOffset {
     }
   }
 
-  /// Nodes at which a flat end or a side of the layers on it would fold.
+  /// Nodes at which a flat end, a side of the layers on it or the inner surface would fold.
   [[nodiscard]] std::vector<Index> folds() const {
     std::vector<Index> list = caps_.folded(move_);
     for (const LayerRim& r : rims_) {
@@ -101,7 +109,38 @@ class LayerOffset {
       if (flat({a, b, d}, right) || flat({a, d, c}, left) || flat({a, b, c}, left) || flat({b, d, c}, right))
         list.insert(list.end(), {r.a, r.b});
     }
+    for (const Edge& e : edges_)
+      if (!(angle(inner_, e.one, e.other, e.across) > 0.99 * e.least))
+        for (const Index t : {e.one, e.other})
+          for (const Index n : sheet_.corners(t)) add_columns(n, list);
+    unify(list);
     return list;
+  }
+
+  /// Edges that columns move, with the inner angle below which the surface counts as folded there.
+  void find_edges() {
+    constexpr double sharp = 15 * std::numbers::pi / 180, part = 0.7;  // [rad]; of the angle on the wall
+    const mesh::Surface& s = sheet_.surface;
+    const auto twin = mesh::twins(s.cells, s.node_count());
+    for (Index h = 0; h < static_cast<Index>(twin.size()); ++h) {
+      const Index g = twin[static_cast<std::size_t>(h)];
+      if (g < h) continue;
+      const auto e = mesh::half_edge(s.cells, h);
+      const Index across = s.cells(mesh::previous_in_triangle(g) % 3, g / 3),
+                  before = s.cells(mesh::previous_in_triangle(h) % 3, h / 3);
+      if (!sheet_.grows(e.from) && !sheet_.grows(e.to) && !sheet_.grows(across) && !sheet_.grows(before))
+        continue;
+      edges_.push_back({h / 3, g / 3, across, std::min(sharp, part * angle(s, h / 3, g / 3, across))});
+    }
+  }
+
+  /// Angle inside of the surface between two triangles, pi and more where it is not convex; `across` is the
+  /// node of the second that the first has not.
+  [[nodiscard]] static double angle(const mesh::Surface& s, Index t, Index u, Index across) {
+    const mesh::Triangle a = mesh::triangle(s, t), b = mesh::triangle(s, u);
+    const Vec3 m = a.area_vector(), n = b.area_vector();
+    if (!(vec::dot(m, vec::minus(vec::column(s.nodes, across), a.a)) < 0)) return std::numbers::pi;
+    return std::numbers::pi - std::atan2(vec::length(vec::cross(m, n)), vec::dot(m, n));
   }
 
   [[nodiscard]] std::vector<Index> crossings() const {
@@ -109,9 +148,12 @@ class LayerOffset {
     for (const auto& [t, u] : self_intersections(inner_))
       for (int k = 0; k < 3; ++k)
         for (const Index n : {inner_.cells(k, t), inner_.cells(k, u)}) add_columns(n, list);
+    unify(list);
+    return list;
+  }
+  static void unify(std::vector<Index>& list) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
   }
   void add_columns(Index n, std::vector<Index>& list) const {
     if (sheet_.foot[static_cast<std::size_t>(n)] != ColumnFoot::none)
@@ -127,6 +169,7 @@ class LayerOffset {
   LayerCaps caps_;
   mesh::Surface inner_;
   std::vector<Vec3> move_;
+  std::vector<Edge> edges_;
 };
 
 inline void tell_heights(const LayerSheet& sheet, const LayerHeights& heights, LayeredFill& result) {

@@ -92,11 +92,11 @@ namespace detail {
 
 }  // namespace detail
 
-/// Nodes that see their triangles at less than asin(0.02) grow no column: their foot becomes fixed. A sweep
+/// Nodes that see their triangles at less than asin(0.2) grow no column: their foot becomes fixed. A sweep
 /// turns each direction half-way to the mean of those around it unless it would see less than 0.8 of what
 /// the most normal one does, or 0.7.
 [[nodiscard]] inline LayerDirections layer_directions(LayerSheet& sheet, int sweeps) {
-  constexpr double blind = 0.02, keep = 0.8, enough = 0.7;
+  constexpr double blind = 0.2, keep = 0.8, enough = 0.7;
   const auto at = [](Index i) { return static_cast<std::size_t>(i); };
   const Index count = sheet.surface.node_count();
   LayerDirections d{std::vector<Vec3>(at(count), Vec3(0, 0, 0)), std::vector<double>(at(count), 0)};
