@@ -48,6 +48,7 @@ class FrontRecovery {
     const auto inside = inside_of(complex, work.s_);
     complex.restrict_to([&](Index t) { return inside[static_cast<std::size_t>(t)] != 0; });
     FrontRelease(complex, work.s_).run();
+    if (way == Way::halving) Improve::thin(complex, static_cast<Index>(nodes.size() + inner.size()));
     return work.counts_;
   }
 

@@ -31,21 +31,33 @@ class FrontRelease {
     // Nearly flat tetrahedra pin a point to where it is: flips take them away, and where these do not help,
     // points that have left move on, or others come between.
     if (!waiting.empty()) Improve::flip(c_, pinning[0]);
+    std::size_t level = 0;
     for (std::size_t stuck = 0; !waiting.empty();) {
       const std::size_t before = waiting.size();
+      level_ = levels[level];
       std::erase_if(waiting, [&](Index node) { return release(node); });
       if (waiting.empty()) return;
-      if (waiting.size() < before)
+      if (waiting.size() < before) {
         Improve::flip(c_, pinning[0]);
-      else if (stuck < pinning.size())
+        level = 0;
+      } else if (level + 1 < levels.size()) {
+        ++level;
+      } else if (stuck < pinning.size()) {
         Improve::loosen(c_, held(waiting), pinning[stuck++]);
-      else
+        level = 0;
+      } else {
         throw RecoveryFailure{c_.point(waiting[0]), "a point cannot leave the surface"};
+      }
     }
   }
 
  private:
-  static constexpr int halvings = 45, most_corners = 200;
+  static constexpr int most_corners = 200;
+  struct Level {
+    double floor;  // sine of the flattest dihedral angle that a move may leave: those that left by a hair
+    int halvings;  // would pin their neighbours on the surface
+  };
+  static constexpr std::array<Level, 4> levels{{{1e-4, 12}, {1e-7, 22}, {1e-10, 32}, {0, 45}}};
   static constexpr std::array<double, 3> pinning{1e-3, 1e-2, 1e-1};  // sine of a dihedral angle
 
   template <class I>
@@ -86,7 +98,7 @@ class FrontRelease {
     const Vec3 origin = c_.point(node);
     find_loops(node, origin);
     if (loops_.empty()) throw RecoveryFailure{origin, "a point has lost the surface"};
-    return contract(node, good) || move(node, origin) || contract(node, any);
+    return contract(node, good) || move(node, origin) || contract(node, std::max(any, level_.floor));
   }
 
   /// Draws the point into a neighbour on the surface, on its edge if it has one.
@@ -148,7 +160,7 @@ class FrontRelease {
       if (ways.size() < 40) ways.push_back(m);
     }
     double step = 1;
-    for (int i = 0; i < halvings; ++i, step *= 0.5) {
+    for (int i = 0; i < level_.halvings; ++i, step *= 0.5) {
       for (const Vec3& way : ways)
         if (close(node, vec::along(origin, step, way))) return true;
     }
@@ -207,8 +219,11 @@ class FrontRelease {
     fresh_.clear();
     bool valid = true;
     for (const Index t : star_) {
-      valid = valid && c_.orient(c_.nodes(t)) > 0;
-      fresh_.push_back(c_.nodes(t));
+      const Quad& n = c_.nodes(t);
+      valid = valid &&
+              sine_quality(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), c_.point(n[3])) > level_.floor;
+      fresh_.push_back(n);
+      if (!valid) break;
     }
     faces_.clear();
     for (std::size_t l = 0; valid && l < loops_.size(); ++l) {
@@ -218,7 +233,7 @@ class FrontRelease {
         return sine_quality(x, c_.point(loop.nodes[at(i)]), c_.point(loop.nodes[at(k)]),
                             c_.point(loop.nodes[at(j)]));
       };
-      valid = polygon_.triangulate(static_cast<int>(loop.nodes.size()), 0, quality) > 0;
+      valid = polygon_.triangulate(static_cast<int>(loop.nodes.size()), level_.floor, quality) > 0;
       for (const auto& [i, k, j] : polygon_.triangles) {
         const Triple tri{loop.nodes[at(i)], loop.nodes[at(k)], loop.nodes[at(j)]};
         fresh_.push_back({node, tri[0], tri[1], tri[2]});
@@ -246,6 +261,7 @@ class FrontRelease {
   TetComplex& c_;
   FrontSurface& s_;
   CavityPolygon polygon_;
+  Level level_ = levels[0];
   std::vector<Index> star_;
   std::vector<Loop> loops_;
   std::vector<Quad> fresh_;

@@ -47,6 +47,20 @@ class Improve {
     }
   }
 
+  /// Takes out nodes from `first` on where that leaves the worst tetrahedra around as good as they were.
+  static void thin(TetComplex& complex, Index first) {
+    constexpr int most = 4;
+    Improve work(complex, {}, 0);
+    work.m_.fixed = first;
+    const auto end = static_cast<Index>(complex.points.size());
+    for (int pass = 0; pass < most; ++pass) {
+      bool changed = false;
+      for (Index n = first; n < end; ++n)
+        if (complex.tet_of[at(n)] >= 0 && work.insert_.take_out(n, 1)) changed = true;
+      if (!changed) return;
+    }
+  }
+
   /// All means on tetrahedra with a sine below the target; the nodes with held[n] = 1 stay.
   static void loosen(TetComplex& complex, std::vector<char> held, double target) {
     constexpr int most = 6;
@@ -112,9 +126,16 @@ class Improve {
   }
 
   bool repair(Index t, int number) {
-    if (remove_an_edge(t)) return ++counts_.edges_removed, true;
-    if (remove_a_face(t)) return ++counts_.faces_removed, true;
     const Quad n = m_.c.nodes(t);
+    if (at(t) >= in_vain_.size()) in_vain_.resize(at(m_.c.size()), 0);
+    const bool again = in_vain_[at(t)] > 0 && std::none_of(n.begin(), n.end(), [&](Index v) {
+                         return m_.changed(v, in_vain_[at(t)]);
+                       });
+    if (!again) {
+      if (remove_an_edge(t)) return ++counts_.edges_removed, true;
+      if (remove_a_face(t)) return ++counts_.faces_removed, true;
+      in_vain_[at(t)] = m_.moment();
+    }
     bool moved = false;
     for (const Index v : n)
       if (smooth_.smooth(v)) ++counts_.moved, moved = true;
@@ -192,6 +213,7 @@ class Improve {
   TetComplex::Ring ring_;
   std::vector<Index> chosen_;
   std::vector<Quad> fresh_;
+  std::vector<ImproveMesh::Moment> in_vain_;  // of each tetrahedron: when no flip helped it last
   std::span<const double> limit_;
   double target_, last_count_ = 0, last_worst_ = 0;
   Index most_inserted_ = 0;

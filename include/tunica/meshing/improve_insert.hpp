@@ -59,8 +59,47 @@ class ImproveInsert {
   bool contract(Index t) {
     const Quad n = m_.c.nodes(t);
     for (const Index v : n)
-      if (m_.free(v) && take_out(v)) return true;
+      if (m_.free(v) && take_out(v, 1.02)) return true;
     return false;
+  }
+
+  /// The star of v as a fan from one of its neighbours, the best of them. The worst must get better by that
+  /// factor.
+  bool take_out(Index v, double factor) {
+    TetComplex& c = m_.c;
+    if (at(v) >= in_vain_.size()) in_vain_.resize(c.points.size(), 0);
+    if (in_vain_[at(v)] > 0 && !m_.changed(v, in_vain_[at(v)])) return false;
+    c.star(v, cavity_);
+    const double before = m_.worst(cavity_);
+    place_.faces.clear();
+    ends_.clear();
+    for (const Index t : cavity_) {
+      const Triple n = c.face(t, c.local(t, v));
+      place_.faces.push_back({n[0], n[2], n[1]});
+      for (const Index w : n)
+        if (std::find(ends_.begin(), ends_.end(), w) == ends_.end()) ends_.push_back(w);
+    }
+    double best = before * factor + 1e-9;
+    Index end = -1;
+    for (const Index w : ends_) {
+      double least = 2;
+      for (const Triple& f : place_.faces) {
+        if (f[0] == w || f[1] == w || f[2] == w) continue;
+        least = std::min(least, m_.quality(Quad{f[0], f[1], f[2], w}));
+        if (least <= best) break;
+      }
+      if (least > best && least <= 1) best = least, end = w;
+    }
+    if (end < 0) {
+      in_vain_[at(v)] = m_.moment();
+      return false;
+    }
+    fresh_.clear();
+    for (const Triple& f : place_.faces)
+      if (f[0] != end && f[1] != end && f[2] != end) fresh_.push_back({f[0], f[1], f[2], end});
+    m_.replace(cavity_, fresh_);
+    c.tet_of[at(v)] = -1;
+    return true;
   }
 
  private:
@@ -145,42 +184,10 @@ class ImproveInsert {
       }
   }
 
-  /// The star of v as a fan from one of its neighbours, the best of them.
-  bool take_out(Index v) {
-    TetComplex& c = m_.c;
-    c.star(v, cavity_);
-    const double before = m_.worst(cavity_);
-    place_.faces.clear();
-    ends_.clear();
-    for (const Index t : cavity_) {
-      const Triple n = c.face(t, c.local(t, v));
-      place_.faces.push_back({n[0], n[2], n[1]});
-      for (const Index w : n)
-        if (std::find(ends_.begin(), ends_.end(), w) == ends_.end()) ends_.push_back(w);
-    }
-    double best = before * 1.02 + 1e-9;
-    Index end = -1;
-    for (const Index w : ends_) {
-      double least = 2;
-      for (const Triple& f : place_.faces) {
-        if (f[0] == w || f[1] == w || f[2] == w) continue;
-        least = std::min(least, m_.quality(Quad{f[0], f[1], f[2], w}));
-        if (least <= best) break;
-      }
-      if (least > best && least <= 1) best = least, end = w;
-    }
-    if (end < 0) return false;
-    fresh_.clear();
-    for (const Triple& f : place_.faces)
-      if (f[0] != end && f[1] != end && f[2] != end) fresh_.push_back({f[0], f[1], f[2], end});
-    m_.replace(cavity_, fresh_);
-    c.tet_of[at(v)] = -1;
-    return true;
-  }
-
   ImproveMesh& m_;
   ImprovePlace place_;
   TetComplex::Ring ring_;
+  std::vector<ImproveMesh::Moment> in_vain_;  // of each node: when taking it out failed last
   std::vector<Index> cavity_, ends_;
   std::vector<Quad> fresh_;
 };

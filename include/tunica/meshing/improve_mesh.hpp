@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -39,7 +40,18 @@ class ImproveMesh {
     for (const Index t : tets) least = std::min(least, quality(t));
     return least;
   }
-  void update(Index t) { quality_[static_cast<std::size_t>(t)] = quality(c.nodes(t)); }
+  void update(Index t) {
+    quality_[static_cast<std::size_t>(t)] = quality(c.nodes(t));
+    for (const Index n : c.nodes(t)) touch(n);
+  }
+
+  /// A moment in the history of changes: what is tried in vain need not be tried again before a change.
+  using Moment = std::uint32_t;
+  [[nodiscard]] Moment moment() { return ++now_; }
+  /// Has a tetrahedron at the node changed since?
+  [[nodiscard]] bool changed(Index node, Moment since) const {
+    return changed_[static_cast<std::size_t>(node)] >= since;
+  }
 
   /// TetComplex::replace with the qualities of the new ones.
   void replace(std::span<const Index> old, std::span<const Quad> fresh) {
@@ -49,7 +61,15 @@ class ImproveMesh {
   }
 
  private:
+  void touch(Index node) {
+    const auto n = static_cast<std::size_t>(node);
+    if (n >= changed_.size()) changed_.resize(c.points.size(), 0);
+    changed_[n] = now_;
+  }
+
   std::vector<double> quality_;
+  std::vector<Moment> changed_;
+  Moment now_ = 0;
   std::vector<Side> open_;
 };
 

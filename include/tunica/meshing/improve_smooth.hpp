@@ -74,6 +74,9 @@ class ImproveSmooth {
   bool smooth(Index node) {
     if (!m_.free(node)) return false;
     TetComplex& c = m_.c;
+    const auto i_node = static_cast<std::size_t>(node);
+    if (i_node >= in_vain_.size()) in_vain_.resize(c.points.size(), 0);
+    if (in_vain_[i_node] > 0 && !m_.changed(node, in_vain_[i_node])) return false;
     c.star(node, star_);
     const double before = m_.worst(star_);
     place_.faces.clear();
@@ -94,7 +97,10 @@ class ImproveSmooth {
     Vec3 x = c.point(node);
     if (const double q = place_.worst(c, middle, value); q > value) value = q, x = middle;
     x = place_.climb(c, x, value, 0.2 * length, value < poor ? many_rounds : rounds);
-    if (!(value > before * (1 + 1e-3) + 1e-9)) return false;
+    if (!(value > before * (1 + 1e-3) + 1e-9)) {
+      in_vain_[i_node] = m_.moment();
+      return false;
+    }
     c.points[static_cast<std::size_t>(node)] = x;
     for (const Index t : star_) m_.update(t);
     return true;
@@ -105,6 +111,7 @@ class ImproveSmooth {
   static constexpr int rounds = 12, many_rounds = 60;
   static constexpr double poor = 1e-3;
   ImproveMesh& m_;
+  std::vector<ImproveMesh::Moment> in_vain_;  // of each node: when its last search failed
   std::vector<Index> star_;
   ImprovePlace place_;
 };
