@@ -9,6 +9,7 @@
 #include "tunica/io/vtu.hpp"
 #include "tunica/meshing/multi_region.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -28,7 +29,14 @@ int main(int argc, char** argv) {
         if (equal == std::string::npos || equal + 1 == text.size()) throw UsageError("expected N=TEXT");
         options.names.push_back({number_of<std::int32_t>(text.substr(0, equal)), text.substr(equal + 1)});
       });
-  cli.option("--sweeps", "N", "sweeps of the smoothing (20); 0: interfaces half-way between voxels",
+  cli.option("--edge", "L", "length of the interfaces' edges (that of a voxel)",
+             [&](const std::string& text) {
+               options.edge = number_of<double>(text);
+               if (!(options.edge > 0 && std::isfinite(options.edge)))
+                 throw UsageError("must be more than 0");
+             });
+  cli.option("--sweeps", "N",
+             "sweeps of the smoothing (20); 0: interfaces as contoured, half-way between voxels",
              [&](const std::string& text) {
                options.sweeps = number_of<int>(text);
                if (options.sweeps < 0 || options.sweeps > 1000) throw UsageError("must be from 0 to 1000");

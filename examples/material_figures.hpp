@@ -29,6 +29,7 @@ namespace tunica::examples {
   j["inverted"] = mesh::quality(m.mesh).inverted;
   j["interface_triangles"] = r.triangles, j["interface_smallest_angle_degrees"] = r.smallest_angle;
   j["interface_smallest_fold_degrees"] = r.smallest_fold;
+  j["interface_nodes_moved_for_flat_tetrahedra"] = r.nudged;
   j["smallest_dihedral_degrees"] = r.min_dihedral, j["mean_ratio"] = r.mean_ratio;
   j["volume_error"] = r.volume_error, j["volume_against_voxels"] = r.deviation;
   return j;

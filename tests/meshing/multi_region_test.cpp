@@ -4,7 +4,7 @@
 
 #include "support/label_images.hpp"
 
-#include "tunica/image/sampling.hpp"
+#include "tunica/core/parallel.hpp"
 
 #include <doctest/doctest.h>
 
@@ -117,6 +117,11 @@ TEST_SUITE("unit") {
     const auto m = meshing::multi_region(g);
     check_conforming(m);
     CHECK(m.mesh.region_names == std::vector<std::string>{"material 5", "material 7", "material 9"});
+    thread_count() = 2;  // regions are filled beside one another: the same bits
+    const auto again = meshing::multi_region(g);
+    thread_count() = 1;
+    CHECK(again.mesh.nodes == m.mesh.nodes);
+    CHECK(again.mesh.cells == m.mesh.cells);
     MESSAGE("volumes of the voxels missed by up to ", m.report.deviation, ", dihedral ",
             m.report.min_dihedral);
   }

@@ -124,8 +124,8 @@ class InterfaceRelax {
   /// than before and than `thin`, go half of the way back to the start, after four times all of it. True when
   /// any did.
   bool send_back() {
-    constexpr double sharp = 0.966;  // cosine of 15 degrees
-    constexpr double thin = 0.17;    // [rad] 10 degrees
+    constexpr double sharp = 0.94;  // cosine of 20 degrees
+    constexpr double thin = 0.26;   // [rad] 15 degrees
     constexpr double least_share = 0.1;
     bool any = false;
     const auto ring = mesh::cells_of_nodes(s_.surface().cells, s_.node_count());

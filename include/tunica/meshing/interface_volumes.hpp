@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The volumes of several regions at once: nodes move along the gradients of the volumes by multipliers, one a
-// region, that solve a symmetric system (Newton's method on G M^-1 G' lambda = dV).
+// region, that solve a symmetric system (Newton's method: G M^-1 G' lambda = dV).
 #pragma once
 
 #include "tunica/meshing/interfaces.hpp"
@@ -62,8 +62,10 @@ class InterfaceVolumes {
     const auto scaled = [&] {
       for (std::size_t i = 0; i < n; ++i) z[i] = diagonal[i] > 0 ? r[i] / diagonal[i] : 0;
     };
-    // conjugate gradients, preconditioned by the diagonal; the system is semi-definite and consistent
+    // Conjugate gradients, preconditioned by the diagonal. The matrix is semi-definite: regions within nodes
+    // that all stay have a fixed sum. A small part of the diagonal keeps their multipliers finite.
     constexpr int most_iterations = 500;
+    constexpr double regular = 1e-8;
     constexpr double tolerance = 1e-24;  // of the squared residual
     scaled();
     p = z;
@@ -71,6 +73,7 @@ class InterfaceVolumes {
     const double start = rho;
     for (int i = 0; i < most_iterations && rho > tolerance * start; ++i) {
       apply(s, p, q);
+      for (std::size_t k = 0; k < n; ++k) q[k] += regular * diagonal[k] * p[k];
       const double curvature = dot(p, q);
       if (!(curvature > 0)) break;
       const double alpha = rho / curvature;

@@ -3,8 +3,12 @@
 // meet. Interfaces are contoured, smoothed and remeshed together, then each region is filled and keeps them.
 #pragma once
 
+#include "tunica/core/parallel.hpp"
+#include "tunica/meshing/interface_nudge.hpp"
 #include "tunica/meshing/interface_relax.hpp"
+#include "tunica/meshing/interface_remesh.hpp"
 #include "tunica/meshing/label_contour.hpp"
+#include "tunica/meshing/region_materials.hpp"
 #include "tunica/meshing/tetrahedra.hpp"
 
 #include <algorithm>
@@ -12,37 +16,26 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <map>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace tunica::meshing {
 
-/// What a label is called in patches: "lumen". Without a name label 3 is "material 3".
-struct LabelName {
-  std::int64_t label = 0;
-  std::string name;
-};
-
 struct MultiRegionOptions {
-  int sweeps = 20;  // of the smoothing; 0: none, and volumes as contoured
+  double edge = 0;  // length of the interfaces' edges, in the unit of the image; 0: that of a voxel
+  int sweeps = 20;  // of the smoothing; 0: neither smoothed nor remeshed
+  // [degrees] Tetrahedra below it may move nodes of interfaces, which costs some of the volumes' accuracy.
+  double nudge_below = 12;
   std::vector<LabelName> names{};
   FillOptions fill{};
-};
-
-/// One material. Volumes in the cube of the image's unit.
-struct MaterialReport {
-  std::int64_t label = 0;
-  std::string name;
-  Index regions = 0, tetrahedra = 0;    // connected parts
-  double voxel_volume = 0, volume = 0;  // of its voxels, of its tetrahedra
 };
 
 struct MultiRegionReport {
   std::vector<MaterialReport> materials;  // by label
   Index triangles = 0;                    // of the interfaces
+  Index nudged = 0;                       // nodes of interfaces that moved for flat tetrahedra
   Index held = 0;                         // nodes that the smoothing sent back: triangles would have crossed
   double smallest_angle = 0;              // of the interfaces' triangles [degrees]
   double smallest_fold = 0;               // least inner angle between two triangles of a region [degrees]
@@ -60,125 +53,69 @@ struct [[nodiscard]] MultiRegionResult {
 
 namespace detail {
 
-/// The boundary of a region: its triangles, turned outward, and the interfaces' number of each node.
-struct RegionSurface {
-  mesh::Surface surface;
-  std::vector<Index> node;
-};
-
-[[nodiscard]] inline std::vector<RegionSurface> region_surfaces(const Interfaces& s, std::size_t regions) {
-  std::vector<std::vector<std::array<Index, 3>>> faces(regions);
-  for (std::size_t t = 0; t < s.faces.size(); ++t) {
-    auto f = s.faces[t];
-    faces[static_cast<std::size_t>(s.sides[t][0])].push_back(f);
-    std::swap(f[1], f[2]);
-    if (s.sides[t][1] >= 0) faces[static_cast<std::size_t>(s.sides[t][1])].push_back(f);
+/// What the mesh of all regions is: volumes of materials and regions, angles. region: of each tetrahedron.
+inline void measure(const MultiRegionResult& m, const std::vector<Index>& region,
+                    const image::LabelRegions& regions, const std::vector<Index>& material_of,
+                    MultiRegionReport& r) {
+  std::vector<long double> volume(regions.regions.size(), 0);
+  double least = std::numbers::pi, ratio = 0;
+  for (Index t = 0; t < m.mesh.cell_count(); ++t) {
+    std::array<Vec3, 4> p;
+    for (std::size_t i = 0; i < 4; ++i)
+      p[i] = vec::column(m.mesh.nodes, m.mesh.cells(static_cast<Eigen::Index>(i), t));
+    volume[static_cast<std::size_t>(region[static_cast<std::size_t>(t)])] +=
+        six_volumes(p[0], p[1], p[2], p[3]);
+    for (const double a : dihedral_angles(p[0], p[1], p[2], p[3])) least = std::min(least, a);
+    ratio += mean_ratio(p[0], p[1], p[2], p[3]);
+    ++r.materials[static_cast<std::size_t>(m.mesh.region[static_cast<std::size_t>(t)])].tetrahedra;
   }
-  std::vector<RegionSurface> result(regions);
-  std::vector<Index> number(s.nodes.size(), -1);
-  for (std::size_t r = 0; r < regions; ++r) {
-    RegionSurface& one = result[r];
-    for (const auto& f : faces[r]) one.node.insert(one.node.end(), f.begin(), f.end());
-    std::sort(one.node.begin(), one.node.end());
-    one.node.erase(std::unique(one.node.begin(), one.node.end()), one.node.end());
-    one.surface.nodes.resize(3, static_cast<Eigen::Index>(one.node.size()));
-    for (std::size_t n = 0; n < one.node.size(); ++n) {
-      number[static_cast<std::size_t>(one.node[n])] = static_cast<Index>(n);
-      vec::set_column(one.surface.nodes, static_cast<Index>(n), s.at(one.node[n]));
-    }
-    one.surface.cells.resize(3, static_cast<Eigen::Index>(faces[r].size()));
-    for (std::size_t t = 0; t < faces[r].size(); ++t)
-      for (std::size_t i = 0; i < 3; ++i)
-        one.surface.cells(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(t)) =
-            number[static_cast<std::size_t>(faces[r][t][i])];
+  r.min_dihedral = least * 180 / std::numbers::pi;
+  r.mean_ratio = ratio / std::max<double>(1, m.mesh.cell_count());
+  const auto enclosed = volumes_of(m.interfaces, volume.size());
+  for (std::size_t i = 0; i < volume.size(); ++i) {
+    if (material_of[i] < 0) continue;
+    const auto v = static_cast<double>(volume[i] / 6);
+    r.materials[static_cast<std::size_t>(material_of[i])].volume += v;
+    r.volume_error = std::max(r.volume_error, std::abs(v / enclosed[i] - 1));
+    r.deviation = std::max(r.deviation, std::abs(v / regions.regions[i].volume - 1));
   }
-  return result;
-}
-
-/// Which materials there are, by label, and which of them each region is (-1: outside).
-struct Materials {
-  std::vector<MaterialReport> list;
-  std::vector<Index> of;
-};
-
-[[nodiscard]] inline Materials materials_of(const image::LabelRegions& regions,
-                                            const std::vector<LabelName>& names) {
-  Materials m;
-  std::map<std::int64_t, Index> number;
-  for (const auto& r : regions.regions)
-    if (r.label != 0) number[r.label] = 0;
-  for (auto& [label, index] : number) {
-    index = static_cast<Index>(m.list.size());
-    MaterialReport one{.label = label, .name = "material " + std::to_string(label)};
-    for (const LabelName& n : names)
-      if (n.label == label) one.name = n.name;
-    m.list.push_back(one);
-  }
-  for (const auto& r : regions.regions) {
-    m.of.push_back(r.label == 0 ? -1 : number[r.label]);
-    if (r.label == 0) continue;
-    MaterialReport& one = m.list[static_cast<std::size_t>(m.of.back())];
-    ++one.regions;
-    one.voxel_volume += r.volume;
-  }
-  return m;
-}
-
-/// A patch for each pair of materials in contact, then for each material those with the outside and with the
-/// borders of the image. Faces are outward of the material that is named first.
-[[nodiscard]] inline std::vector<mesh::Patch<mesh::Tri3>> interface_patches(const Interfaces& s,
-                                                                            const Materials& m) {
-  constexpr std::array<const char*, 6> border{"x0", "x1", "y0", "y1", "z0", "z1"};
-  const auto count = static_cast<Index>(m.list.size());
-  std::map<std::pair<Index, Index>, std::vector<std::array<Index, 3>>> faces;
-  for (std::size_t t = 0; t < s.faces.size(); ++t) {
-    auto f = s.faces[t];
-    Index a = m.of[static_cast<std::size_t>(s.sides[t][0])], b = count;
-    if (const int side = border_face(s.sides[t][1]); side >= 0)
-      b = count + 1 + side;
-    else
-      b = m.of[static_cast<std::size_t>(s.sides[t][1])];
-    if (a < 0) a = count;  // the outside comes after the materials
-    if (b < 0) b = count;
-    if (b < a) std::swap(a, b), std::swap(f[1], f[2]);
-    faces[{a, b}].push_back(f);
-  }
-  std::vector<mesh::Patch<mesh::Tri3>> patches;
-  for (const auto& [pair, list] : faces) {
-    const auto name = [&](Index i) -> std::string {
-      if (i < count) return m.list[static_cast<std::size_t>(i)].name;
-      if (i == count) return "outside";
-      return std::string("border ") + border[static_cast<std::size_t>(i - count - 1)];
-    };
-    mesh::Patch<mesh::Tri3> p{name(pair.first) + "|" + name(pair.second), {}};
-    p.faces.resize(3, static_cast<Eigen::Index>(list.size()));
-    for (std::size_t t = 0; t < list.size(); ++t)
-      for (std::size_t i = 0; i < 3; ++i)
-        p.faces(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(t)) = list[t][i];
-    patches.push_back(std::move(p));
-  }
-  return patches;
+  r.triangles = static_cast<Index>(m.interfaces.faces.size());
+  double thin = std::numbers::pi;
+  for (std::size_t t = 0; t < m.interfaces.faces.size(); ++t)
+    thin = std::min(thin, m.interfaces.triangle(t).smallest_angle());
+  r.smallest_angle = thin * 180 / std::numbers::pi;
 }
 
 /// Fills every region but the outside and joins the fillings over the nodes of the interfaces.
-[[nodiscard]] inline MultiRegionResult fill_regions(Interfaces interfaces, Materials materials,
+[[nodiscard]] inline MultiRegionResult fill_regions(Interfaces interfaces, Materials materials, double edge,
                                                     const image::LabelRegions& regions,
-                                                    const FillOptions& options) {
+                                                    const MultiRegionOptions& options) {
   MultiRegionResult result;
   MultiRegionReport& report = result.report;
-  report.min_dihedral = report.smallest_angle = report.smallest_fold = 360;
+  report.materials = std::move(materials.list);
+  report.smallest_fold = 360;
   std::vector<Vec3> nodes = interfaces.nodes;
   std::vector<std::array<Index, 4>> cells;
+  std::vector<Index> region;
   const auto surfaces = region_surfaces(interfaces, regions.regions.size());
+  std::vector<FillResult> fillings(surfaces.size());
+  std::vector<std::string> failures(surfaces.size());
+  parallel_chunks(static_cast<std::ptrdiff_t>(surfaces.size()), 1, [&](std::ptrdiff_t first, std::ptrdiff_t) {
+    const auto r = static_cast<std::size_t>(first);
+    if (materials.of[r] < 0) return;
+    try {
+      fillings[r] = tetrahedra(surfaces[r].surface, options.fill);
+    } catch (const MeshError& error) {
+      failures[r] = error.what();
+    }
+  });
   for (std::size_t r = 0; r < surfaces.size(); ++r) {
     if (materials.of[r] < 0) continue;
-    MaterialReport& material = materials.list[static_cast<std::size_t>(materials.of[r])];
-    FillResult filled;
-    try {
-      filled = tetrahedra(surfaces[r].surface, options);
-    } catch (const MeshError& error) {
-      throw MeshError(material.name + " (label " + std::to_string(material.label) + "): " + error.what());
-    }
+    const MaterialReport& material = report.materials[static_cast<std::size_t>(materials.of[r])];
+    if (!failures[r].empty())
+      throw MeshError(material.name + " (label " + std::to_string(material.label) + "): " + failures[r]);
+    const FillResult& filled = fillings[r];
+    report.smallest_fold = std::min(report.smallest_fold, filled.report.surface_min_dihedral);
     std::vector<Index> number = surfaces[r].node;
     for (Index n = surfaces[r].surface.node_count(); n < filled.mesh.node_count(); ++n) {
       number.push_back(static_cast<Index>(nodes.size()));
@@ -189,30 +126,24 @@ struct Materials {
       for (std::size_t i = 0; i < 4; ++i)
         q[i] = number[static_cast<std::size_t>(filled.mesh.cells(static_cast<Eigen::Index>(i), t))];
       cells.push_back(q);
+      region.push_back(static_cast<Index>(r));
       result.mesh.region.push_back(materials.of[r]);
       result.material.push_back(material.label);
     }
-    const FillReport& f = filled.report;
-    material.tetrahedra += f.tetrahedra;
-    material.volume += f.volume;
-    report.mean_ratio += f.mean_ratio * f.tetrahedra;
-    report.min_dihedral = std::min(report.min_dihedral, f.min_dihedral);
-    report.smallest_angle = std::min(report.smallest_angle, f.surface_min_angle);
-    report.smallest_fold = std::min(report.smallest_fold, f.surface_min_dihedral);
-    report.volume_error = std::max(report.volume_error, f.volume_error);
-    report.deviation = std::max(report.deviation, std::abs(f.volume / regions.regions[r].volume - 1));
   }
-  report.mean_ratio /= static_cast<double>(std::max<std::size_t>(1, cells.size()));
-  report.triangles = static_cast<Index>(interfaces.faces.size());
-  result.mesh.nodes = vec::columns(nodes);
   result.mesh.cells.resize(4, static_cast<Eigen::Index>(cells.size()));
   for (std::size_t t = 0; t < cells.size(); ++t)
     for (std::size_t i = 0; i < 4; ++i)
       result.mesh.cells(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(t)) = cells[t][i];
-  for (const MaterialReport& m : materials.list) result.mesh.region_names.push_back(m.name);
-  result.mesh.patches = interface_patches(interfaces, materials);
-  report.materials = std::move(materials.list);
+  if (options.sweeps > 0) {
+    report.nudged = InterfaceNudge(interfaces, edge, nodes, result.mesh.cells).run(options.nudge_below);
+    std::copy_n(nodes.begin(), interfaces.nodes.size(), interfaces.nodes.begin());
+  }
+  result.mesh.nodes = vec::columns(nodes);
+  for (const MaterialReport& m : report.materials) result.mesh.region_names.push_back(m.name);
+  result.mesh.patches = interface_patches(interfaces, report.materials, materials.of);
   result.interfaces = std::move(interfaces);
+  measure(result, region, regions, materials.of, report);
   return result;
 }
 
@@ -227,16 +158,36 @@ template <std::integral T>
                                              const MultiRegionOptions& options = {}) {
   const image::LabelRegions regions = image::label_regions(labels);
   const detail::Materials materials = detail::materials_of(regions, options.names);
-  Interfaces interfaces = label_contour(regions);
+  // The interfaces at each stage: those of the last one are filled, and if that fails those before it.
+  std::vector<Interfaces> stages{label_contour(regions)};
   RelaxReport relaxed;
-  if (options.sweeps > 0) {
-    std::vector<double> target;  // outside that reaches the border of the image takes what is left
-    for (const auto& r : regions.regions) target.push_back(r.label == 0 && r.at_border ? -1 : r.volume);
-    relaxed = InterfaceRelax(interfaces).run(options.sweeps, target);
+  std::vector<double> target;  // outside that reaches the border of the image takes what is left
+  double volume = 0;
+  for (const auto& r : regions.regions) {
+    target.push_back(r.label == 0 && r.at_border ? -1 : r.volume);
+    volume += r.volume;
   }
-  auto result = detail::fill_regions(std::move(interfaces), materials, regions, options.fill);
-  result.report.held = relaxed.held;
-  return result;
+  const double edge =
+      options.edge > 0 ? options.edge : std::cbrt(volume / static_cast<double>(labels.values.size()));
+  if (options.sweeps > 0) {
+    const auto relax = [&](Interfaces s, int sweeps) {
+      relaxed = InterfaceRelax(s).run(sweeps, target);
+      return s;
+    };
+    stages.push_back(relax(stages[0], options.sweeps));
+    const Interfaces even = relax(remeshed(stages[1], edge), options.sweeps);
+    stages.push_back(relax(tidied(relax(remeshed(even, edge), options.sweeps), edge), 0));
+  }
+  for (;;) {
+    try {
+      auto result = detail::fill_regions(std::move(stages.back()), materials, edge, regions, options);
+      result.report.held = relaxed.held;
+      return result;
+    } catch (const MeshError&) {
+      stages.pop_back();
+      if (stages.empty()) throw;
+    }
+  }
 }
 
 }  // namespace tunica::meshing
