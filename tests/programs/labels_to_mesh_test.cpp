@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// The program on label images: materials with names and volumes, and every wrong use.
+#include "programs/run_program.hpp"
+#include "support/label_images.hpp"
+#include "support/shared.hpp"
+#include "tunica/io/vtk_image_write.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+using namespace tunica::test;
+
+TEST_SUITE("job") {
+  TEST_CASE("labels_to_mesh: a tube with a wall gets its materials and caps") {
+    const auto checker = shared("tools/check_mesh.py");
+    if (!checker || program("labels_to_mesh").empty()) return;
+    const Folder folder;
+    const auto labels = label_image({12, 12, 10}, {1, 1, 1}, [](const tunica::Vec3& x) {
+      const double r = std::hypot(x[0] - 5.5, x[1] - 5.5);
+      return r < 3 ? 1 : r < 5 ? 2 : 0;
+    });
+    tunica::io::write_vtk_image(folder.path() / "labels.vtk", labels);
+    const auto o = run(folder, program("labels_to_mesh") +
+                                   " labels.vtk --name 1=lumen --name 2=wall -o a.vtu --report r.json");
+    INFO(o.err);
+    REQUIRE(o.status == 0);
+    const std::string report = text_of(folder.path() / "r.json");
+    CHECK(figure(report, {"fill", "inverted"}) == 0);
+    CHECK(figure(report, {"fill", "smallest_dihedral_degrees"}) >= 12);
+    CHECK(figure(report, {"fill", "volume_against_voxels"}) < 1e-9);
+    for (const char* name : {"lumen|wall", "lumen|border z0", "wall|outside", "wall|border z1"})
+      CHECK(has(report, std::string("\"") + name + "\""));
+    CHECK(has(text_of(folder.path() / "a.vtu"), "Name=\"material\""));
+    CHECK(faults(*checker, folder, "a.vtu") == "");
+  }
+
+  TEST_CASE("labels_to_mesh: wrong uses and images without labels end with their sentence") {
+    if (program("labels_to_mesh").empty()) return;
+    const Folder folder;
+    auto labels = label_image({4, 4, 4}, {1, 1, 1}, [](const tunica::Vec3&) { return 0; });
+    tunica::io::write_vtk_image(folder.path() / "empty.vtk", labels);
+    labels.values[21] = -3;
+    tunica::io::write_vtk_image(folder.path() / "negative.vtk", labels);
+    const auto fails = [&](const std::string& words, int status, const std::string& part) {
+      CAPTURE(words);
+      const auto o = run(folder, program("labels_to_mesh") + " " + words);
+      CHECK(o.status == status);
+      CHECK(has(o.err, part));
+    };
+    fails("empty.vtk", 1, "no voxel of the image has a label");
+    fails("negative.vtk", 1, "no label");
+    fails("empty.vtk --name 1", 2, "N=TEXT");
+    fails("empty.vtk --edge 0", 2, "more than 0");
+    fails("empty.vtk --sweeps -1", 2, "from 0 to 1000");
+    CHECK(folder.files().size() == 2);
+  }
+}
