@@ -72,9 +72,10 @@ TEST_SUITE("unit") {
       return meshing::edges_of(s, [](double) { return true; });
     };
     const double mean = std::sqrt(mesh::area(sphere) / sphere.cell_count() / (std::sqrt(3.0) / 4));
-    meshing::detail::RemeshState fine(sphere, 0.5 * mean, 180), coarse(sphere, 2 * mean, 180);
+    meshing::detail::RemeshState fine(sphere, meshing::ConstantSize{0.5 * mean}, 180),
+        coarse(sphere, meshing::ConstantSize{2 * mean}, 180);
     for (int pass = 0; pass < 3; ++pass) split_long(fine), collapse_short(coarse);
-    CHECK(edges(fine.edit).back().length <= meshing::detail::long_edge * fine.edge);
+    CHECK(edges(fine.edit).back().length <= meshing::detail::long_edge * fine.size.edge);
     CHECK(edges(fine.edit).size() > 3 * edges(coarse.edit).size());
     double before = 0, after = 0;  // of triangles from the sphere of radius 1, in the mean
     const auto inside = [](const meshing::EditableSurface& s) {

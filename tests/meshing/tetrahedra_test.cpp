@@ -165,8 +165,8 @@ TEST_SUITE("unit") {
 
   TEST_CASE("meshing: tetrahedra honour a size field") {
     const auto s = test::icosphere(4);  // edges of about 0.075
-    const auto fine = tetrahedra(s, [](const Vec3&) { return 0.075; });
-    const auto coarse = tetrahedra(s, [](const Vec3& x) { return 0.075 + 0.3 * (1 - x.norm()); });
+    const auto fine = tetrahedra(s, {}, [](const Vec3&) { return 0.075; });
+    const auto coarse = tetrahedra(s, {}, [](const Vec3& x) { return 0.075 + 0.3 * (1 - x.norm()); });
     check_filling(s, coarse.mesh);
     CHECK(coarse.report.tetrahedra < 0.6 * fine.report.tetrahedra);
     const auto edge_near_centre = [](const mesh::TetMesh& m) {

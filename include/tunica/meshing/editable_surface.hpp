@@ -26,8 +26,12 @@ class EditableSurface {
  public:
   using Nodes = std::array<Index, 3>;
 
-  EditableSurface(const mesh::Surface& s, const Facets& facets, double edge)
-      : grid_(mesh::bounding_box(s.nodes), edge), facet_size_(facets.region.size(), 0) {
+  /// Two triangles may meet at this angle or more (cosine of the turn), or as sharply as those that they
+  /// replace: no shallow bulge beside a flat end is drawn flat against it.
+  static constexpr double five_degrees = 0.996, twenty_degrees = 0.94;
+
+  EditableSurface(const mesh::Surface& s, const Facets& facets, double edge, double sharp = five_degrees)
+      : grid_(mesh::bounding_box(s.nodes), edge), facet_size_(facets.region.size(), 0), sharp_(sharp) {
     for (Index n = 0; n < s.node_count(); ++n) x_.push_back(s.nodes.col(n));
     ring_.resize(x_.size());
     for (Index t = 0; t < s.cell_count(); ++t)
@@ -182,10 +186,6 @@ class EditableSurface {
   // a triangle may turn from the mean normal of its facet about the edit by at most 75 degrees (cosine); a
   // flip, whose two triangles are nearly in one plane, by 45
   static constexpr double most_turn = 0.26, flip_turn = 0.7;
-  // two triangles may meet at 5 degrees or more (cosine), or as sharply as those that they replace: no
-  // shallow bulge beside a flat end is drawn flat against it. With 20 degrees bumps of the vessel stay that
-  // should go.
-  static constexpr double sharp = 0.996;
 
   [[nodiscard]] static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -251,7 +251,7 @@ class EditableSurface {
     };
     const double fold = sharpest_fold(
         made, [&](Index n) { return x(n); }, beyond);
-    if (fold <= sharp) return false;
+    if (fold <= sharp_) return false;
     std::vector<Nodes> old;
     for (const Index t : gone) old.push_back(nodes(t));
     return fold > sharpest_fold(
@@ -282,6 +282,7 @@ class EditableSurface {
   std::vector<std::vector<Index>> ring_;
   TriangleGrid grid_;
   std::vector<Index> facet_size_;
+  double sharp_;
   LeftOut left_out_;
 };
 

@@ -10,8 +10,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 namespace tunica::meshing {
@@ -33,10 +35,10 @@ class Lattice {
       : surface_(surface), size_(size), options_(options) {}
 
   [[nodiscard]] std::vector<Vec3> points() {
-    // The leaves halve a root cube; at the median size they have exactly the wanted edge. The unit
+    // The leaves halve a root cube; at the reference size they have exactly the wanted edge. The unit
     // has few bits, so that coordinates are exact.
     const Box& box = surface_.box();
-    const double leaf = cell_edge(median_size());
+    const double leaf = cell_edge(reference_size());
     unit_ = rounded(leaf / (2 * finest));
     double extent = 2 * finest * unit_;
     int level = finest_level + 1;
@@ -76,11 +78,29 @@ class Lattice {
     return std::max(std::round(x / step) * step, step);
   }
 
-  [[nodiscard]] double median_size() const {
+  /// The median at the nodes of the surface, and where sizes vary inside that times the part of a halving
+  /// which brings leaves nearest to what is wanted there: the mean of log2 h on a circle.
+  [[nodiscard]] double reference_size() const {
     std::vector<double> h = surface_.node_sizes();
     for (std::size_t i = 0; i < h.size(); ++i) h[i] = size_(surface_.node(static_cast<Index>(i)));
     std::nth_element(h.begin(), h.begin() + static_cast<std::ptrdiff_t>(h.size() / 2), h.end());
-    return h[h.size() / 2];
+    const double median = h[h.size() / 2];
+    if constexpr (std::same_as<Size, SurfaceSize> || std::same_as<Size, SizeWithin<SurfaceSize>>)
+      return median;
+    constexpr int samples = 12;  // an axis
+    const Box& box = surface_.box();
+    double cosine = 0, sine = 0;
+    for (int i = 0; i < samples * samples * samples; ++i) {
+      const std::array<int, 3> at{i % samples, i / samples % samples, i / samples / samples};
+      Vec3 x = box.lo;
+      for (int k = 0; k < 3; ++k)
+        x[k] += (at[static_cast<std::size_t>(k)] + 0.5) / samples * (box.hi[k] - box.lo[k]);
+      if (!surface_.nearest(x).inside) continue;
+      const double wanted = size_(x), turn = 2 * std::numbers::pi * std::log2(wanted / median);
+      const double count = 1 / (wanted * wanted * wanted);  // as many nodes stand there
+      cosine += count * std::cos(turn), sine += count * std::sin(turn);
+    }
+    return median * std::exp2(std::atan2(sine, cosine) / (2 * std::numbers::pi));
   }
 
   /// Visits the cube [corner, corner + edge]; deep: wholly inside, far from the surface.

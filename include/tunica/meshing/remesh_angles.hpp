@@ -20,7 +20,8 @@ namespace tunica::meshing::detail {
 }
 
 /// Tries a few places about a node and keeps the one with the largest smallest angle.
-inline void raise(RemeshState& w, Index n) {
+template <class Size>
+void raise(RemeshState<Size>& w, Index n) {
   EditableSurface& s = w.edit;
   const NodeKind kind = kind_of(s, n);
   if (kind == NodeKind::corner) return;
@@ -43,7 +44,8 @@ inline void raise(RemeshState& w, Index n) {
 }
 
 /// Works on the triangles below 25 degrees, the worst first.
-inline void repair_angles(RemeshState& w) {
+template <class Size>
+void repair_angles(RemeshState<Size>& w) {
   // A triangle whose edges are between 4/5 and 4/3 of the target has 33 degrees or more. What has less than
   // 25 needs help, which may take edges a little outside of that range.
   constexpr double wanted = 0.44;  // [rad]
@@ -63,7 +65,7 @@ inline void repair_angles(RemeshState& w) {
     for (std::size_t k = 1; k < 3; ++k)
       if (s.length(v[k], v[(k + 1) % 3]) < s.length(v[shortest], v[(shortest + 1) % 3])) shortest = k;
     const Index p = v[shortest], q = v[(shortest + 1) % 3];
-    if (s.length(p, q) < collapsed * w.edge && collapse(w, p, q, longest_made * w.edge)) continue;
+    if (s.length(p, q) < collapsed * w.size_of(p, q) && collapse(w, p, q, longest_made)) continue;
     for (const Index n : v) raise(w, n);
   }
 }

@@ -17,7 +17,8 @@ struct Deviation {
 };
 
 /// The mean of the deviation of a triangle is that of its edges' middles (exact for a quadratic).
-[[nodiscard]] inline Deviation deviation(const RemeshState& w) {
+template <class Size>
+[[nodiscard]] Deviation deviation(const RemeshState<Size>& w) {
   const EditableSurface& s = w.edit;
   const auto count = static_cast<std::size_t>(s.node_count());
   Deviation d{std::vector<double>(count, 0), std::vector<double>(count, 0),
@@ -42,7 +43,8 @@ struct Deviation {
 }
 
 /// The mean deviation of the rim edges at n along a direction, each by Simpson's rule.
-[[nodiscard]] inline double rim_rise(const RemeshState& w, Index n, const Vec3& direction) {
+template <class Size>
+[[nodiscard]] double rim_rise(const RemeshState<Size>& w, Index n, const Vec3& direction) {
   const EditableSurface& s = w.edit;
   const auto f = facets_at(s, n);
   double sum = 0, length = 0;
@@ -55,7 +57,8 @@ struct Deviation {
   return sum / length;
 }
 
-inline void fit(RemeshState& w) {
+template <class Size>
+void fit(RemeshState<Size>& w) {
   EditableSurface& s = w.edit;
   const Deviation d = deviation(w);
   constexpr double across = 1e-6;  // sine to the plane: below it the surface is level with a flat end

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace tunica::meshing::detail {
 
@@ -18,10 +19,25 @@ inline constexpr double long_edge = 4.0 / 3, short_edge = 4.0 / 5;
 /// stub.
 inline constexpr double most_wear = 0.3;
 
-inline void split_long(RemeshState& w) {
+/// Edges that wanted(length, target) picks, the shortest first: by length over target where that varies.
+template <class Size, class Wanted>
+[[nodiscard]] std::vector<EditEdge> edges_by_target(RemeshState<Size>& w, Wanted&& wanted) {
+  if constexpr (RemeshState<Size>::constant) {
+    return edges_of(w.edit, [&](double l) { return wanted(l, w.size.edge); });
+  } else {
+    std::vector<EditEdge> found;
+    for (const EditEdge& e : edges_of(w.edit, [](double) { return true; }))
+      if (const double target = w.size_of(e.a, e.b); wanted(e.length, target))
+        found.push_back({e.length / target, e.a, e.b});
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+}
+
+template <class Size>
+void split_long(RemeshState<Size>& w) {
   EditableSurface& s = w.edit;
-  const double most = long_edge * w.edge;
-  auto todo = edges_of(s, [&](double l) { return l > most; });
+  auto todo = edges_by_target(w, [](double l, double target) { return l > long_edge * target; });
   for (auto e = todo.rbegin(); e != todo.rend(); ++e) {
     if (!has_edge(s, e->a, e->b)) continue;
     const auto [left, right] = s.sides(e->a, e->b);
@@ -33,9 +49,10 @@ inline void split_long(RemeshState& w) {
   }
 }
 
-/// Merges an edge into its more strongly bound node or its middle, unless an edge longer than `most`
-/// results.
-inline bool collapse(RemeshState& w, Index a, Index b, double most) {
+/// Merges an edge into its more strongly bound node or its middle, unless an edge longer than `most` times
+/// its target results.
+template <class Size>
+bool collapse(RemeshState<Size>& w, Index a, Index b, double most) {
   EditableSurface& s = w.edit;
   NodeKind ka = kind_of(s, a), kb = kind_of(s, b);
   if (kb > ka) std::swap(a, b), std::swap(ka, kb);
@@ -44,11 +61,12 @@ inline bool collapse(RemeshState& w, Index a, Index b, double most) {
   Vec3 place = s.x(a);
   if (ka == kb) place = w.on_target(a, 0.5 * (s.x(a) + s.x(b)));
   const auto tried = [&](Index stays, Index goes, const Vec3& p) {
+    const double here = w.size(p);
     for (const Index n : {a, b})
       for (const Index m : s.neighbours(n))
-        if (m != a && m != b && (s.x(m) - p).norm() > most) return false;
+        if (m != a && m != b && (s.x(m) - p).norm() > most * w.between(w.size_of(m), here)) return false;
     const double lost = w.wear.after(s, a, b, p);
-    if (lost > most_wear * w.edge) {
+    if (lost > most_wear * here) {
       ++w.kept_features;
       return false;
     }
@@ -61,11 +79,12 @@ inline bool collapse(RemeshState& w, Index a, Index b, double most) {
   return tried(a, b, s.x(a)) || tried(b, a, s.x(b));
 }
 
-inline void collapse_short(RemeshState& w) {
-  const double least = short_edge * w.edge;
-  for (const EditEdge& e : edges_of(w.edit, [&](double l) { return l < least; }))
-    if (has_edge(w.edit, e.a, e.b) && w.edit.length(e.a, e.b) < least)
-      (void)collapse(w, e.a, e.b, long_edge * w.edge);
+template <class Size>
+void collapse_short(RemeshState<Size>& w) {
+  const auto is_short = [](double l, double target) { return l < short_edge * target; };
+  for (const EditEdge& e : edges_by_target(w, is_short))
+    if (has_edge(w.edit, e.a, e.b) && is_short(w.edit.length(e.a, e.b), w.size_of(e.a, e.b)))
+      (void)collapse(w, e.a, e.b, long_edge);
 }
 
 }  // namespace tunica::meshing::detail

@@ -12,9 +12,10 @@
 
 namespace tunica::meshing {
 
-/// Offsets by at most `reach`; false, and nothing is changed, when that does not suffice or the surface
-/// would cross itself.
-inline bool restore_volume(mesh::Surface& s, double volume, double reach) {
+/// Offsets by at most `reach`, each node by its share of that (all the same without shares); false, and
+/// nothing is changed, when that does not suffice or the surface would cross itself.
+inline bool restore_volume(mesh::Surface& s, double volume, double reach,
+                           const std::vector<double>& share = {}) {
   const auto planes = flat_regions(s);
   const Bonds bound = bonds(s, planes);
   Points<3> direction = Points<3>::Zero(3, s.node_count());
@@ -31,6 +32,7 @@ inline bool restore_volume(mesh::Surface& s, double volume, double reach) {
     }
     const double l = bound.of(n) == Bond::none || bound.of(n) == Bond::rim ? d.norm() : 0;
     direction.col(n) = l > 0 ? (d / l).eval() : Vec3::Zero().eval();
+    if (!share.empty()) direction.col(n) *= share[static_cast<std::size_t>(n)];
   }
   const std::vector<Index> one_part(static_cast<std::size_t>(s.cell_count()), 0);
   const Vec3 origin = mesh::bounding_box(s.nodes).centre();

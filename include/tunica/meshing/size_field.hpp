@@ -11,6 +11,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace tunica::meshing {
@@ -20,6 +21,12 @@ namespace tunica::meshing {
 template <class S>
 concept SizeField = requires(const S& size, const Vec3& x) {
   { size(x) } -> std::convertible_to<double>;  // a size field gives an edge length at a point
+};
+
+/// The same length everywhere.
+struct ConstantSize {
+  double edge;
+  [[nodiscard]] double operator()(const Vec3&) const { return edge; }
 };
 
 /// Distance to a closed oriented surface, the side, and the size of its triangles, at any point.
@@ -150,6 +157,34 @@ class SurfaceSize {
   std::vector<double> size_;
   std::vector<Vec3> normal_;
   std::vector<std::array<Vec3, 3>> edge_normal_;
+};
+
+/// A size field, but no longer than the triangles of a surface near it, which it outgrows at the rate of
+/// SurfaceSize. The size that a surface carries inside is left as it is.
+template <SizeField Size>
+class SizeWithin {
+ public:
+  static constexpr bool of_surface = std::same_as<Size, SurfaceSize>;
+
+  /// The rate for SurfaceSize: that asked for, and for a field in space a third when none is.
+  [[nodiscard]] static double growth(double asked) {
+    constexpr double usual = 0.3;
+    return of_surface || asked > 0 ? asked : usual;
+  }
+
+  SizeWithin(const SurfaceSize& surface, const Size& field) : surface_(surface), field_(field) {
+    for (const double h : surface.node_sizes()) least_ = std::min(least_, h);
+  }
+
+  [[nodiscard]] double operator()(const Vec3& x) const {
+    const double h = field_(x);
+    return of_surface || h <= least_ ? h : std::min(h, surface_(x));
+  }
+
+ private:
+  const SurfaceSize& surface_;
+  const Size& field_;
+  double least_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace tunica::meshing

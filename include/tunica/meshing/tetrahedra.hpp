@@ -9,6 +9,7 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/triangle.hpp"
 #include "tunica/meshing/front_recovery.hpp"
+#include "tunica/meshing/front_ways.hpp"
 #include "tunica/meshing/improve.hpp"
 #include "tunica/meshing/lattice.hpp"
 #include "tunica/meshing/size_field.hpp"
@@ -28,7 +29,8 @@
 namespace tunica::meshing {
 
 struct FillOptions {
-  double growth = 0.0;        // of the size per distance from the surface, 0: as at the surface
+  double growth = 0.0;        // of the size per distance from the surface, 0: as at the surface; with a size
+                              // field of how fast that takes over from shorter edges of the surface, 0: 0.3
   double lattice_edge = 1.0;  // mean edge of the inner lattice over the size; 1: inner tetrahedra as regular
                               // ones on triangles of that size would be
   double clearance = 0.5;     // of the lattice from the surface, over the size of its triangles
@@ -91,52 +93,6 @@ inline void measure_surface(const FrontSurface& s, const std::vector<Vec3>& node
   if (volume < 0) throw MeshError("the surface is inward: the volume that it bounds is negative");
   r.surface_min_angle = least * 180 / std::numbers::pi;
   r.surface_min_dihedral = fold * 180 / std::numbers::pi;
-}
-
-/// Powers of two, one an axis, that make the edges of the surface about as long in each direction.
-/// Coordinates times them are exact and so are the signs of volumes: what is triangulated in the stretched
-/// space is valid in the other.
-[[nodiscard]] inline Vec3 stretch_of(const FrontSurface& s, const std::vector<Vec3>& nodes) {
-  Vec3 sum(0, 0, 0);
-  for (const auto& e : s.edges) {
-    const Vec3 d = vec::minus(nodes[static_cast<std::size_t>(e.a)], nodes[static_cast<std::size_t>(e.b)]);
-    for (int k = 0; k < 3; ++k) sum[k] += std::abs(d[k]);
-  }
-  const double most = std::max({sum[0], sum[1], sum[2]});
-  for (int k = 0; k < 3; ++k)  // a surface in one plane, which nothing fills, is not stretched out of it
-    sum[k] = sum[k] > 0 ? std::exp2(std::round(std::log2(most / sum[k]))) : 1;
-  return sum;
-}
-
-/// Ways to fill, in the order in which they are tried until one succeeds.
-struct FillWay {
-  FrontRecovery::Way way;
-  bool stretched;   // in a space where the edges of the surface are about as long in each direction
-  bool with_inner;  // points of the lattice; other ones for each way
-  int lattice;
-};
-using enum FrontRecovery::Way;
-inline constexpr std::array<FillWay, 8> fill_ways{{{forward, false, true, 0},
-                                                   {backward, false, true, 1},
-                                                   {forward, true, true, 0},
-                                                   {backward, true, true, 1},
-                                                   {halving, true, true, 2},
-                                                   {halving, true, false, 0},
-                                                   {halving, false, true, 2},
-                                                   {halving, false, false, 0}}};
-
-/// For each node of the surface the sine that a tetrahedron with an edge there can be asked for:
-/// that of the smallest angle of the triangles at the node.
-[[nodiscard]] inline std::vector<double> surface_limits(const FrontSurface& s,
-                                                        const std::vector<Vec3>& nodes) {
-  std::vector<double> limit(nodes.size(), 1.0);
-  for (const Triple& t : s.triangles) {
-    const auto p = [&](std::size_t i) { return nodes[static_cast<std::size_t>(t[i])]; };
-    const double sine = std::sin(mesh::Triangle{p(0), p(1), p(2)}.smallest_angle());
-    for (const Index n : t)
-      limit[static_cast<std::size_t>(n)] = std::min(limit[static_cast<std::size_t>(n)], sine);
-  }
-  return limit;
 }
 
 /// Checks everything that is promised and measures the rest: signs, border, volume, angles. RecoveryFailure
@@ -225,17 +181,19 @@ inline void verify(const TetComplex& c, const FrontSurface& s, const FillOptions
 /// Fills the closed, oriented surface. Its nodes come first, with their numbers and coordinates;
 /// every triangle of it is a face of the border; its regions become the patches, with their names,
 /// in their order. Parts that lie inside one another are cavities, parts beside one another are
-/// filled each. MeshError names the place when the surface is open, not manifold, inward, crosses
-/// itself, or could not be filled.
+/// filled each. Inner edges follow the size field, but near the surface they are no longer than its
+/// triangles. MeshError names the place when the surface is open, not manifold, inward, crosses itself, or
+/// could not be filled.
 template <SizeField Size>
-FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const FillOptions& options = {}) {
+FillResult tetrahedra(const mesh::Surface& surface, const FillOptions& options, const Size& size) {
   const FrontSurface front(surface.nodes, surface.cells);
   std::vector<Vec3> nodes;
   for (Index n = 0; n < surface.node_count(); ++n) nodes.push_back(vec::column(surface.nodes, n));
   for (const Index r : surface.region)
     if (r < 0 || static_cast<std::size_t>(r) >= std::max<std::size_t>(1, surface.region_names.size()))
       throw MeshError("a triangle of the surface has region " + std::to_string(r) + ", which has no name");
-  const SurfaceSize distances(surface.nodes, surface.cells, options.growth);
+  const SurfaceSize distances(surface.nodes, surface.cells, SizeWithin<Size>::growth(options.growth));
+  const SizeWithin<Size> inner_size(distances, size);
 
   FillReport measured;
   detail::measure_surface(front, nodes, measured);
@@ -259,19 +217,24 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
     LatticeOptions lattice{.edge = options.lattice_edge, .clearance = options.clearance};
     lattice.shift = vec::scaled(way.lattice, Vec3(0.37, 0.23, 0.11));
     std::vector<Vec3> inner;
-    if (way.with_inner) inner = Lattice(distances, size, lattice).points();
+    if (way.with_inner) inner = Lattice(distances, inner_size, lattice).points();
     const Vec3 by = way.stretched ? stretch : Vec3(1, 1, 1);
     TetComplex complex;
     FillReport report = measured;
     try {
+      const auto start = way.shake > 0 ? detail::shaken(front, nodes, way.shake) : nodes;
       const RecoveryCounts counts =
-          FrontRecovery::run(complex, front, scaled(nodes, by), scaled(std::move(inner), by), way.way);
+          FrontRecovery::run(complex, front, scaled(start, by), scaled(std::move(inner), by), way.way);
       report.missing_edges = counts.missing_edges;
       report.missing_faces = counts.missing_faces;
       report.steiner = counts.steiner;
       complex.points = scaled(std::move(complex.points), Vec3(1 / by[0], 1 / by[1], 1 / by[2]));
       report.improvement = Improve::run(complex, detail::surface_limits(front, nodes), target);
+      if (way.shake > 0) std::copy(nodes.begin(), nodes.end(), complex.points.begin());
       detail::verify(complex, front, options, report);
+    } catch (const MeshError&) {
+      if (way.shake == 0) throw;
+      continue;  // shaken too much
     } catch (const RecoveryFailure& failure) {
       if (!last) continue;
       throw MeshError(std::string("the surface could not be filled: ") + failure.what + ", at " +
@@ -288,7 +251,7 @@ FillResult tetrahedra(const mesh::Surface& surface, const Size& size, const Fill
 /// As above, with the size of the surface carried into the inside.
 [[nodiscard]] inline FillResult tetrahedra(const mesh::Surface& surface, const FillOptions& options = {}) {
   const SurfaceSize size(surface.nodes, surface.cells, options.growth);
-  return tetrahedra(surface, size, options);
+  return tetrahedra(surface, options, size);
 }
 
 }  // namespace tunica::meshing
