@@ -6,9 +6,11 @@
 #include "tunica/mesh/measures.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/meshing/dual_complex.hpp"
+#include "tunica/meshing/grid_specks.hpp"
 #include "tunica/meshing/hermite_surface.hpp"
 #include "tunica/meshing/hex_guide.hpp"
 #include "tunica/meshing/improve_hexahedra.hpp"
+#include "tunica/meshing/level_hexahedra.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,11 +33,14 @@ struct [[nodiscard]] HexFillReport {
   double least_jacobian = 0;  // scaled Jacobian of the worst cell
   Vec3 worst_place{0, 0, 0};  // its centre
   double mean_jacobian = 0;
-  double first_percentile = 0;                // of the scaled Jacobians
-  Index below_sound = 0;                      // cells with a scaled Jacobian below 0.2
-  double volume = 0;                          // of the cells
-  double surface_volume = 0;                  // that the surface encloses
+  double first_percentile = 0;  // of the scaled Jacobians
+  Index below_sound = 0;        // cells with a scaled Jacobian below 0.2
+  double volume = 0;            // of the cells
+  GridSpecks specks;            // parts and gaps of less than eight nodes of the grid, left out and filled
+  double surface_volume = 0;    // that the surface encloses
   double distance_rms = 0, distance_max = 0;  // of the border's nodes and face centres from the surface
+  Vec3 distance_place{0, 0, 0};               // where it is largest
+  Index released = 0;                         // nodes that had to leave the surface, by half an edge or more
 };
 
 struct [[nodiscard]] HexFill {
@@ -66,7 +71,7 @@ namespace detail {
 }
 
 inline void measure(const HexComplex& hexes, const SurfaceGuide& guide, const mesh::Surface& surface,
-                    const Facets& facets, HexFill& fill) {
+                    HexFill& fill) {
   HexFillReport& r = fill.report;
   const auto q = mesh::quality(fill.mesh);
   r.cells = fill.mesh.cell_count();
@@ -81,26 +86,45 @@ inline void measure(const HexComplex& hexes, const SurfaceGuide& guide, const me
   r.surface_volume = mesh::enclosed_volume(surface);
   double sum = 0;
   std::size_t count = 0;
-  const auto add = [&](double d) {
+  const auto add = [&](const Vec3& lack, const Vec3& place) {
+    const double d = vec::length(lack);
     sum += d * d, ++count;
-    r.distance_max = std::max(r.distance_max, d);
+    if (d > r.distance_max) r.distance_max = d, r.distance_place = place;
   };
+  for (std::size_t n = 0; n < hexes.nodes.size(); ++n) {
+    const auto& site = guide.site(static_cast<Index>(n));
+    if (!site.inside() && !site.corner)
+      add(guide.lack(static_cast<Index>(n), hexes.nodes[n]), hexes.nodes[n]);
+  }
   for (std::size_t f = 0; f < hexes.border.size(); ++f) {
-    const Index facet = hexes.facet[f];
     Vec3 centre(0, 0, 0);
-    Index start = -1;
-    for (const Index n : hexes.border[f]) {
+    for (const Index n : hexes.border[f])
       centre = vec::along(centre, 0.25, hexes.nodes[static_cast<std::size_t>(n)]);
-      if (guide.triangle(n) >= 0 && guide.site(n).facet == facet) start = guide.triangle(n);
-    }
-    if (const auto& plane = facets.planes[static_cast<std::size_t>(facet)])
-      add(std::abs(plane->distance(centre)));
-    else
-      add(vec::distance(
-          centre,
-          (start < 0 ? guide.walk().nearest(centre, facet) : guide.walk().slide(start, centre)).point));
+    const Index near = guide.node_on(hexes.border[f], hexes.facet[f]);
+    add(near >= 0 ? guide.lack(near, centre)
+                  : vec::minus(guide.walk().nearest(centre, hexes.facet[f]).point, centre),
+        centre);
   }
   if (count > 0) r.distance_rms = std::sqrt(sum / static_cast<double>(count));
+}
+
+/// Cells must not get worse for it: where one falls below what is good, and below what it was, its nodes
+/// stay.
+inline void level(HexComplex& hexes, SurfaceGuide& guide, const HexFillOptions& options) {
+  std::vector<Vec3> x = level_places(hexes, guide, options.edge);
+  std::swap(hexes.nodes, x);
+  const double good = 0.9 * options.improve.target;
+  for (bool again = true; again;) {
+    again = false;
+    for (const auto& cell : hexes.cells) {
+      const double now = hex_jacobian(hexes.nodes, cell);
+      if (now >= good || now >= hex_jacobian(x, cell)) continue;
+      for (const Index n : cell) {
+        const auto i = static_cast<std::size_t>(n);
+        if (hexes.nodes[i] != x[i]) hexes.nodes[i] = x[i], again = true;
+      }
+    }
+  }
 }
 
 }  // namespace detail
@@ -113,14 +137,18 @@ inline void measure(const HexComplex& hexes, const SurfaceGuide& guide, const me
   mesh::Surface labelled = surface;
   labelled.region = facet.of;
   labelled.region_names.assign(facet.region.size(), "");
-  const HermiteGrid grid = hermite_of_surface(labelled, {.spacing = options.edge});
+  HermiteGrid grid = hermite_of_surface(labelled, {.spacing = options.edge});
+  GridSpecks specks = remove_specks(grid, 8);
   const mesh::QuadSurface contour = dual_contour(grid);
   HexComplex hexes = dual_complex(grid, contour);
   SurfaceGuide guide(surface, facet, hexes.sites);
-  (void)improve_hexahedra(hexes, guide, options.improve);
+  const auto improved = improve_hexahedra(hexes, guide, options.edge, options.improve);
+  detail::level(hexes, guide, options);
   HexFill fill;
+  fill.report.specks = std::move(specks);
+  fill.report.released = improved.released;
   fill.mesh = detail::mesh_of(hexes, surface, facet);
-  detail::measure(hexes, guide, surface, facet, fill);
+  detail::measure(hexes, guide, surface, fill);
   return fill;
 }
 

@@ -10,6 +10,7 @@
 #include "tunica/search/octree.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <map>
 #include <utility>
@@ -22,8 +23,9 @@ namespace tunica::meshing {
 ///   d; } };
 template <class G>
 concept HexGuide = requires(G& g, Index n, const Vec3& x) {
-  { g.placed(n, x) } -> std::convertible_to<Vec3>;  // the place nearest to x where node n may be
-  { g.way(n, x) } -> std::convertible_to<Vec3>;     // the part of a direction along which it may go
+  { g.placed(n, x) } -> std::convertible_to<Vec3>;     // the place nearest to x where node n may be
+  { g.way(n, x) } -> std::convertible_to<Vec3>;        // the part of a direction along which it may go
+  { g.release(n, 1.0) } -> std::convertible_to<bool>;  // it may go so far from where it belongs
 };
 
 /// The nodes of a complex on the facets of a closed surface.
@@ -57,10 +59,29 @@ class SurfaceGuide {
 
   [[nodiscard]] const HexSite& site(Index n) const { return sites_[at(n)]; }
 
+  /// The node may leave its place by that length; those of flat facets stay in their planes.
+  bool release(Index n, double reach) {
+    if (sites_[at(n)].inside() || (facets_.planes[at(sites_[at(n)].facet)] && !sites_[at(n)].rim()))
+      return false;
+    return loose_.insert_or_assign(n, reach).second;
+  }
+
   [[nodiscard]] Vec3 placed(Index n, const Vec3& x) {
     const HexSite& s = sites_[at(n)];
     if (s.inside() || s.corner) return x;
-    if (s.rim()) return rims_.at({s.facet, s.other}).nearest(x).point;
+    if (const auto loose = loose_.find(n); loose != loose_.end()) {
+      const Vec3 y = in_planes(n, x);
+      const Vec3 foot = bound(n, y), off = vec::minus(y, foot);
+      const double far = vec::length(off);
+      return far <= loose->second ? y : vec::along(foot, loose->second / far, off);
+    }
+    return bound(n, x);
+  }
+
+  /// Where the node belongs.
+  [[nodiscard]] Vec3 bound(Index n, const Vec3& x) {
+    const HexSite& s = sites_[at(n)];
+    if (s.rim()) return rims_.at({s.facet, s.other}).nearest(x);
     if (const auto& plane = facets_.planes[at(s.facet)]) return plane->projected(x);
     Index& t = triangle_[at(n)];
     const SurfacePoint p = t < 0 ? walk_.nearest(x, s.facet) : walk_.slide(t, x);
@@ -70,7 +91,7 @@ class SurfaceGuide {
 
   [[nodiscard]] Vec3 way(Index n, const Vec3& d) const {
     const HexSite& s = sites_[at(n)];
-    if (s.inside()) return d;
+    if (s.inside() || loose_.count(n) > 0) return d;
     if (s.corner) return {0, 0, 0};
     if (s.rim()) return d;  // placed() brings it back
     const Vec3 normal = outward(n);
@@ -84,8 +105,34 @@ class SurfaceGuide {
     return triangle_[at(n)] < 0 ? Vec3(0, 0, 0) : vec::unit(walk_.normal(triangle_[at(n)]));
   }
 
+  /// What leads from x to the surface, or the rim, beside the node.
+  [[nodiscard]] Vec3 lack(Index n, const Vec3& x) const {
+    const HexSite& s = sites_[at(n)];
+    if (s.corner) return {0, 0, 0};
+    if (s.rim()) return vec::minus(rims_.at({s.facet, s.other}).nearest(x), x);
+    if (const auto& plane = facets_.planes[at(s.facet)])
+      return vec::scaled(-plane->distance(x), plane->normal);
+    return vec::minus(walk_.slide(triangle_[at(n)], x).point, x);
+  }
+
+  /// A node of the face that is on the facet alone; -1 if there is none.
+  [[nodiscard]] Index node_on(const std::array<Index, 4>& face, Index facet) const {
+    for (const Index n : face)
+      if (sites_[at(n)].facet == facet && !sites_[at(n)].rim() && (flat(facet) || triangle_[at(n)] >= 0))
+        return n;
+    return -1;
+  }
+
+  /// x in the planes of the flat facets of the node.
+  [[nodiscard]] Vec3 in_planes(Index n, Vec3 x) const {
+    for (const Index f : {sites_[at(n)].facet, sites_[at(n)].other})
+      if (f >= 0 && flat(f)) x = facets_.planes[at(f)]->projected(x);
+    return x;
+  }
+
+  [[nodiscard]] bool flat(Index facet) const { return facets_.planes[at(facet)].has_value(); }
+  [[nodiscard]] bool loose(Index n) const { return loose_.count(n) > 0; }
   [[nodiscard]] const SurfaceWalk& walk() const { return walk_; }
-  [[nodiscard]] Index triangle(Index n) const { return triangle_[at(n)]; }
 
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
@@ -101,13 +148,10 @@ class SurfaceGuide {
   struct Rim {
     std::vector<Segment> segments;
     search::Octree tree;
-    struct Hit {
-      Vec3 point;
-    };
-    [[nodiscard]] Hit nearest(const Vec3& x) const {
+    [[nodiscard]] Vec3 nearest(const Vec3& x) const {
       const auto found =
           tree.nearest(x, [&](Index i) { return vec::squared(vec::minus(segments[at(i)].nearest(x), x)); });
-      return {segments[at(found.item)].nearest(x)};
+      return segments[at(found.item)].nearest(x);
     }
   };
 
@@ -115,7 +159,8 @@ class SurfaceGuide {
   const Facets& facets_;
   SurfaceWalk walk_;
   std::vector<HexSite> sites_;
-  std::vector<Index> triangle_;  // where a node of a curved facet is
+  std::map<Index, double> loose_;  // nodes that may leave their places, and how far
+  std::vector<Index> triangle_;    // where a node of a curved facet is
   std::map<std::pair<Index, Index>, Rim> rims_;
 };
 
