@@ -7,7 +7,7 @@
 #include "tunica/mesh/measures.hpp"
 #include "tunica/meshing/open_stars.hpp"
 #include "tunica/meshing/predicates.hpp"
-#include "tunica/search/box_pairs.hpp"
+#include "tunica/search/octree.hpp"
 
 #include <algorithm>
 #include <array>
@@ -140,7 +140,7 @@ template <class Position>
   const auto nodes = [&](Index t) {
     return std::array<Index, 3>{s.cells(0, t), s.cells(1, t), s.cells(2, t)};
   };
-  search::overlapping_pairs(boxes, [&](Index t, Index u) {
+  search::Octree(boxes).pairs([&](Index t, Index u) {
     bool apart = false;  // in the open star of a common corner
     for (const Index n : settled[static_cast<std::size_t>(t)])
       for (const Index m : settled[static_cast<std::size_t>(u)]) apart |= n == m;

@@ -26,7 +26,10 @@ struct MostNormal {
     const double size = vec::length(axis);
     if (!(size > 1e-12)) return;
     double cosine = std::numeric_limits<double>::infinity();
-    for (const Vec3& n : normals) cosine = std::min(cosine, vec::dot(n, axis) / size);
+    for (const Vec3& n : normals) {
+      cosine = std::min(cosine, vec::dot(n, axis) / size);
+      if (!(cosine > best.cosine)) return;
+    }
     if (cosine > best.cosine) best = {vec::scaled(1 / size, axis), cosine};
   };
   for (std::size_t i = 0; i < normals.size(); ++i) {

@@ -157,6 +157,13 @@ class QuadMisfit {
     const double e = distance / tolerance_ - 1;
     return e > 0 ? e * e : 0;
   }
+  /// The distance from the surface, or any within the tolerance, which are all the same.
+  [[nodiscard]] double beyond(const Vec3& x) const {
+    if constexpr (requires { surface_.distance(x, tolerance_); })
+      return surface_.distance(x, tolerance_);
+    else
+      return surface_.distance(x);
+  }
   [[nodiscard]] double misfit(const Target& t) const { return target_weight * excess(std::sqrt(t.square)); }
   [[nodiscard]] double misfit(Index q) const {
     double sum = 0;
@@ -173,7 +180,7 @@ class QuadMisfit {
       const double weight = (k == 0 || k == 3 ? 1 - u(i) : u(i)) * (k < 2 ? 1 - v(i) : v(i)),
                    known = away_[at(q)][i];
       if (known + weight * moved <= tolerance_) continue;
-      sum += excess(weight > 0 ? surface_.distance(f.at(u(i), v(i))) : known);
+      sum += excess(weight > 0 ? beyond(f.at(u(i), v(i))) : known);
     }
     return sum;
   }

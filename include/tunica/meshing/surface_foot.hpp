@@ -60,8 +60,12 @@ class FootFinder {
                        x, [&](Index i) { return squared(x, i); }, bound * bound));
   }
 
-  [[nodiscard]] double distance(const Vec3& x) const {
-    return std::sqrt(tree_.nearest(x, [&](Index i) { return squared(x, i); }).squared_distance);
+  /// Where it is not above `enough` it may be that of another triangle within that distance.
+  [[nodiscard]] double distance(const Vec3& x, double enough = 0) const {
+    constexpr double unbounded = std::numeric_limits<double>::infinity();
+    const auto found = tree_.nearest(
+        x, [&](Index i) { return squared(x, i); }, unbounded, enough * enough);
+    return std::sqrt(found.squared_distance);
   }
 
   /// Of a surface that is not empty.
