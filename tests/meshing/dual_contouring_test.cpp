@@ -137,7 +137,7 @@ TEST_SUITE("unit") {
     compare(ball, {}, 1e-3);
     compare(ball, mask, 1e-3);
     compare(noise, {}, 1e-3);
-    compare(wide, {}, 0.1);
+    compare(wide, {}, 0.01);
   }
 
   TEST_CASE("meshing: dual contouring has the same bits on any number of threads") {

@@ -5,9 +5,11 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/core/parallel.hpp"
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/cell_loops.hpp"
 #include "tunica/meshing/hermite.hpp"
+#include "tunica/meshing/part_sheets.hpp"
 #include "tunica/meshing/qef.hpp"
 
 #include <algorithm>
@@ -21,8 +23,8 @@ namespace tunica::meshing {
 
 struct DualContouringOptions {
   QefOptions qef{};
-  /// Vertices keep this share of their cell from its sides; a negative share lets them leave it by so
-  /// much: sharp edges that pass just outside are met, at the price of overlaps on rough data.
+  /// Vertices keep this share of their cell from its sides; a negative one lets them go wherever their error
+  /// is least: sharp edges that pass just outside are met, at the price of overlaps on rough data.
   double hold = 1e-3;
 };
 
@@ -149,6 +151,20 @@ class CrossingLookup {
   return flats == 0 ? best : planes.minimum(best, options.qef).position;
 }
 
+/// A vertex in a flat region.
+[[nodiscard]] inline bool stays(const HermiteGrid& grid, const std::array<const Crossing*, 12>& around,
+                                int count) {
+  return std::any_of(around.begin(), around.begin() + count, [&](const Crossing* x) {
+    return grid.regions[static_cast<std::size_t>(x->region)].flat;
+  });
+}
+
+[[nodiscard]] inline Vec3 mean_in(const Box& hold, const std::array<const Crossing*, 12>& around, int count) {
+  Vec3 sum(0, 0, 0);
+  for (int n = 0; n < count; ++n) sum = vec::plus(sum, around[static_cast<std::size_t>(n)]->point);
+  return held_in(hold, vec::divided(sum, count));
+}
+
 }  // namespace detail
 
 /// Quadrilaterals with outward normals; the regions of the surface are those of the crossings.
@@ -175,6 +191,8 @@ class CrossingLookup {
             hold.lo[e] = lo + margin, hold.hi[e] = hi - margin;
           }
           const auto& loops = cells.loops(c);
+          detail::Sheets sheets;
+          Index first = 0;
           for (int loop = 0; loop < loops.count; ++loop) {
             std::array<const Crossing*, 12> around{};
             int count = 0;
@@ -187,8 +205,17 @@ class CrossingLookup {
               around[static_cast<std::size_t>(count++)] = &crossing(3 * node + axis);
               vertex = cells.vertex(c, e);
             }
-            surface.nodes.col(vertex) = detail::dual_vertex(grid, around, count, hold, options);
+            const Vec3 x = detail::dual_vertex(grid, around, count, hold, options);
+            surface.nodes.col(vertex) = x;
+            if (loop == 0) first = vertex;
+            sheets.mean[sheets.count] =
+                detail::stays(grid, around, count) ? x : detail::mean_in(hold, around, count);
+            sheets.place[sheets.count++] = x;
           }
+          if (sheets.count < 2 || options.hold < 0) continue;
+          detail::part(sheets, vec::distance(hold.lo, hold.hi));
+          for (std::size_t s = 0; s < sheets.count; ++s)
+            vec::set_column(surface.nodes, first + static_cast<Index>(s), sheets.place[s]);
         }
       });
 

@@ -8,25 +8,21 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/contour.hpp"
 #include "tunica/meshing/dual_topology.hpp"
-#include "tunica/meshing/flat_vertex.hpp"
 #include "tunica/meshing/grid_crossing.hpp"
 #include "tunica/meshing/least_error.hpp"
 #include "tunica/meshing/padded_bits.hpp"
+#include "tunica/meshing/vertex_placer.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
 namespace tunica::meshing::detail {
-
-/// Regions are kept as bits of a word, six of them are borders.
-inline constexpr std::size_t most_cuts = 57;
 
 /// The sweep over the grid with its layer of outside nodes. Crossings: cross<axis>(node, first_inside) of an
 /// edge within the image. Each thread fills a slab of slices; crossings between two slabs are found twice.
@@ -70,8 +66,8 @@ class DualSweep {
   /// The cells between two slices of nodes: what stands for each, and the errors of their vertices.
   struct Layer {
     std::unique_ptr<Index[]> map;
-    std::vector<PlaneSums> sums;
-    std::vector<std::uint64_t> flat;  // regions that are flat, a bit each; empty: there are none
+    std::vector<PlaneSums> walls;
+    std::vector<FlatCrossings> flat;  // empty where no region is flat
     Index first = 0;                  // vertex
   };
 
@@ -103,7 +99,6 @@ class DualSweep {
       border_[side] = static_cast<Index>(regions_.size());
       regions_.push_back(border);
     }
-    any_flat_ = regions_.size() > 1;
   }
 
   void prepare(Layer& layer, std::size_t k) const {
@@ -111,8 +106,8 @@ class DualSweep {
     topology_.number(k, layer.map.get());
     layer.first = topology_.first_vertex(first);
     const auto vertices = static_cast<std::size_t>(topology_.first_vertex(end) - layer.first);
-    layer.sums.assign(vertices, {});
-    if (any_flat_) layer.flat.assign(vertices, 0);
+    layer.walls.assign(vertices, {});
+    if (regions_.size() > 1) layer.flat.assign(vertices, {});
   }
 
   /// The vertices of the cells above the slices begin .. end - 1 and the quadrilaterals of edges from there.
@@ -174,9 +169,13 @@ class DualSweep {
       const auto v = static_cast<std::size_t>(vertex[n] - layer.first);
       Vec3 p;
       p[A] = along, p[B] = (edge[n] & 1U) != 0 ? wide_b : 0, p[C] = (edge[n] & 2U) != 0 ? wide_c : 0;
-      layer.sums[v].add(p, x.normal);
-      if (x.region != 0 && regions_[static_cast<std::size_t>(x.region)].flat)
-        layer.flat[v] |= std::uint64_t{1} << static_cast<unsigned>(x.region);
+      if (x.region == 0) {
+        layer.walls[v].add(p, x.normal);
+      } else {
+        FlatCrossings& flat = layer.flat[v];
+        flat.regions |= std::uint64_t{1} << static_cast<unsigned>(x.region);
+        flat.sum = vec::plus(flat.sum, p), ++flat.count;
+      }
     }
     if (!s) return;
     Index* q = s->cells.data() + 4 * std::ptrdiff_t{quad};
@@ -192,51 +191,19 @@ class DualSweep {
     return crossings_.template cross<A>({node[0] - 1, node[1] - 1, node[2] - 1}, inside);
   }
 
-  /// Puts the vertices of the cells above slice k where their errors are least.
   void place(std::size_t k, const Layer& layer, mesh::QuadSurface& s) const {
-    const double z = axes_[2][k], dz = axes_[2][k + 1] - z;
+    const VertexPlacer placer(axes_, regions_, cuts_, hold_, options_);
     for (std::size_t j = 0; j + 1 < ny_; ++j) {
-      const double y = axes_[1][j], dy = axes_[1][j + 1] - y;
       const auto [first, end] = topology_.cells(j, k);
       for (std::size_t c = first; c < end; ++c) {
-        const std::size_t i = topology_.i(c);
-        const double x = axes_[0][i], dx = axes_[0][i + 1] - x;
-        const double mx = hold_ * dx, my = hold_ * dy, mz = hold_ * dz;
-        const Box box{Vec3(mx, my, mz), Vec3(dx - mx, dy - my, dz - mz)};
-        for (Index v = topology_.first_vertex(c); v < topology_.first_vertex(c + 1); ++v) {
-          const auto local = static_cast<std::size_t>(v - layer.first);
-          const PlaneSums& sums = layer.sums[local];
-          const bool flat = any_flat_ && (layer.flat[local] != 0 || on_border({i, j, k}));
-          const Vec3 best =
-              flat ? place_flat({i, j, k}, sums, layer.flat[local]) : least_error(sums, box, options_);
-          double* to = s.nodes.data() + 3 * std::ptrdiff_t{v};
-          to[0] = x + best[0], to[1] = y + best[1], to[2] = z + best[2];
-        }
+        const Index from = topology_.first_vertex(c), beyond = topology_.first_vertex(c + 1);
+        const std::ptrdiff_t v = from - layer.first;
+        placer.place({topology_.i(c), j, k},
+                     {static_cast<std::size_t>(beyond - from), layer.walls.data() + v,
+                      layer.flat.empty() ? nullptr : layer.flat.data() + v},
+                     s.nodes.data() + 3 * std::ptrdiff_t{from});
       }
     }
-  }
-
-  [[nodiscard]] bool on_border(const GridNode& cell) const {
-    return cell[0] == 0 || cell[0] + 2 == nx_ || cell[1] == 0 || cell[1] + 2 == ny_ || cell[2] == 0 ||
-           cell[2] + 2 == nz_;
-  }
-
-  [[nodiscard]] Vec3 place_flat(const GridNode& at, const PlaneSums& sums, std::uint64_t flat) const {
-    FlatCell cell;
-    cell.spacing = std::numeric_limits<double>::infinity();
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto e = static_cast<int>(a);
-      const double size = axes_[a][at[a] + 1] - axes_[a][at[a]];
-      cell.corner[e] = axes_[a][at[a]];
-      cell.spacing = std::min(cell.spacing, size);
-      cell.box.lo[e] = at[a] == 0 ? size : 0;  // the layer around the image is as thin as its border
-      cell.box.hi[e] = at[a] + 2 == bits_.size(a) ? 0 : size;
-    }
-    std::array<const HermiteRegion*, most_cuts> planes{};
-    std::size_t count = 0;
-    for (std::size_t r = 1; r < cuts_; ++r)
-      if ((flat >> r & 1U) != 0) planes[count++] = &regions_[r];
-    return flat_vertex(sums, {planes.data(), count}, cell, hold_, options_);
   }
 
   const std::array<std::vector<double>, 3> axes_;
@@ -249,7 +216,6 @@ class DualSweep {
   LeastErrorOptions options_;
   std::size_t nx_, ny_, nz_;
   std::array<Index, 6> border_{};  // regions
-  bool any_flat_ = false;
 };
 
 }  // namespace tunica::meshing::detail

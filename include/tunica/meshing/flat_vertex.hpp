@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/vec.hpp"
+#include "tunica/meshing/flat_section.hpp"
 #include "tunica/meshing/hermite.hpp"
 #include "tunica/meshing/least_error.hpp"
 #include "tunica/meshing/qef.hpp"
@@ -12,104 +13,89 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace tunica::meshing::detail {
 
-/// Nodes nearer to a plane than this share of the grid's spacing lie on it, for rounding not to tell.
-inline constexpr double on_plane = 1e-9;
-
-/// n . (x - point), 0 on the plane; spacing: of the grid [length].
-[[nodiscard]] inline double plane_distance(const HermiteRegion& plane, const Vec3& x, double spacing) {
-  const double d = vec::dot(plane.normal, vec::minus(x, plane.point));
-  return std::abs(d) <= on_plane * spacing ? 0 : d;
-}
-
-/// A cell from its low corner: its sides; a cell of the layer around the grid is as thin as the border.
-struct FlatCell {
-  Vec3 corner;  // in the image
-  Box box;      // relative to it
-  double spacing;
-
-  [[nodiscard]] bool thin(int axis) const { return !(box.lo[axis] < box.hi[axis]); }
+/// The crossings of one vertex that lie in flat regions, relative to the low corner of its cell.
+struct FlatCrossings {
+  std::uint64_t regions = 0;  // a bit each
+  Vec3 sum{0, 0, 0};
+  int count = 0;
 };
 
-/// A point in the plane and in the cell (not on its sides, unless the plane only touches it there): the mean
-/// of the places where the plane meets the edges of the cell.
-[[nodiscard]] inline Vec3 inside_section(const FlatCell& cell, const HermiteRegion& plane,
-                                         const Vec3& other) {
-  Vec3 sum(0, 0, 0);
-  int count = 0;
-  const auto corner = [&](int c) {
-    return Vec3((c & 1) != 0 ? cell.box.hi[0] : cell.box.lo[0],
-                (c & 2) != 0 ? cell.box.hi[1] : cell.box.lo[1],
-                (c & 4) != 0 ? cell.box.hi[2] : cell.box.lo[2]);
+struct RimPoint {
+  Vec3 place;
+  bool smooth;  // the wall
+};
+
+/// From a point of the span to the least error of the wall's crossings in it. The start is level with their
+/// mean on the wall, and the step is cut short where the wall is smooth, as in the cells beside.
+[[nodiscard]] inline RimPoint least_error_in(const FlatSpan& span, const PlaneSums& sums, const Vec3& from,
+                                             const LeastErrorOptions& options) {
+  const SymmetricEigen eigen(sums.matrix());
+  int most = 0;
+  for (int i = 1; i < 3; ++i) most = eigen.values[i] > eigen.values[most] ? i : most;
+  const Vec3 wall(eigen.vectors(0, most), eigen.vectors(1, most), eigen.vectors(2, most));
+  const Vec3 mean = sums.mass_point();
+  Vec3 x = vec::plus(from, span.part(vec::minus(mean, from)));
+  constexpr double steep = 0.1;  // of the wall against the span, squared
+  const Vec3 fall = span.part(wall);
+  if (vec::squared(fall) > steep)
+    x = vec::along(x, vec::dot(wall, vec::minus(mean, x)) / vec::squared(fall), fall);
+  const Vec3 r = sums.descent(x), au = sums.applied(span.u), aw = sums.applied(span.w);
+  const LeastStep step =
+      least_step(vec::dot(span.u, au), vec::dot(span.w, aw), vec::dot(span.u, aw), vec::dot(span.u, r),
+                 vec::dot(span.w, r), options.cut * eigen.values[most]);
+  const double share = step.rank == 1 ? options.smooth : 1;
+  return {vec::along(vec::along(x, share * step.x, span.u), share * step.y, span.w), step.rank == 1};
+}
+
+/// Rims of smooth walls are met so far outside of a cell, as a share of it: where one passes beside the cell,
+/// its plane and its wall enter the cell at different places.
+inline constexpr double rim_reach = 0.5, rim_share = 0.98;
+
+[[nodiscard]] inline bool within(const Box& box, double reach, const Vec3& x) {
+  for (int a = 0; a < 3; ++a) {
+    const double beyond = reach * (box.hi[a] - box.lo[a]);
+    if (!(x[a] >= box.lo[a] - beyond && x[a] <= box.hi[a] + beyond)) return false;
+  }
+  return true;
+}
+
+/// Relative to the low corner of the cell. sums: of the crossings with the wall; cuts: the planes of the
+/// others that are no border. Where more planes meet than one and the border is not asked for the cell: they
+/// are met wherever that is.
+[[nodiscard]] inline Vec3 flat_vertex(const PlaneSums& sums, const FlatCrossings& flat,
+                                      std::span<const HermiteRegion* const> cuts, const FlatCell& cell,
+                                      double hold, const LeastErrorOptions& options) {
+  const int walls = sums.count();
+  const Vec3 mean = vec::divided(vec::plus(flat.sum, {sums.px, sums.py, sums.pz}), walls + flat.count);
+  Qef meeting;
+  std::array<Vec3, 3> normals;
+  std::size_t planes = 0;
+  const auto add = [&](const Vec3& point, const Vec3& normal) {
+    if (planes < 3) normals[planes] = normal;
+    meeting.add(point, normal), ++planes;
   };
-  for (int a = 0; a < 3; ++a) {
-    if (cell.thin(a)) continue;
-    for (int c = 0; c < 8; ++c) {
-      if ((c >> a & 1) != 0) continue;
-      const Vec3 p = corner(c), q = corner(c | 1 << a);
-      const double d = plane_distance(plane, vec::plus(cell.corner, p), cell.spacing),
-                   e = plane_distance(plane, vec::plus(cell.corner, q), cell.spacing);
-      if ((d < 0) == (e < 0)) continue;
-      sum = vec::plus(sum, vec::between(p, q, d / (d - e)));
-      ++count;
-    }
-  }
-  return count > 0 ? vec::divided(sum, count) : other;
-}
-
-/// From a point of the box towards another, no farther than the box; what lies outside of it is not left.
-[[nodiscard]] inline Vec3 within(const Box& box, const Vec3& from, const Vec3& to) {
-  double t = 1;
-  for (int a = 0; a < 3; ++a) {
-    const double step = to[a] - from[a];
-    const double bound = step > 0 ? std::max(box.hi[a], from[a]) : std::min(box.lo[a], from[a]);
-    if (step != 0) t = std::min(t, std::max(0.0, (bound - from[a]) / step));
-  }
-  return vec::between(from, to, t);
-}
-
-/// Relative to the low corner of the cell. planes: those that cut the crossings of this vertex; it keeps the
-/// share `hold` of the cell from the cell's sides if the plane allows.
-[[nodiscard]] inline Vec3 flat_vertex(const PlaneSums& sums, std::span<const HermiteRegion* const> planes,
-                                      const FlatCell& cell, double hold, const LeastErrorOptions& options) {
-  Box box = cell.box;
-  int thin = -1, count = 0;
-  for (int a = 0; a < 3; ++a) {
-    const double margin = hold * (box.hi[a] - box.lo[a]);
-    box.lo[a] += margin, box.hi[a] -= margin;
-    if (cell.thin(a)) thin = a, ++count;
-  }
-  if (planes.empty()) return least_error_held(sums, box, options);
-  if (planes.size() > 1 || count > 1) {  // an edge or a corner of flat parts
-    Qef meeting;
-    for (const HermiteRegion* p : planes) meeting.add(vec::minus(p->point, cell.corner), p->normal);
-    for (int a = 0; a < 3; ++a)
-      if (cell.thin(a)) meeting.add(box.lo, Vec3(a == 0, a == 1, a == 2));
-    constexpr double parallel = 1e-6;
-    Vec3 x = meeting.minimum(least_error_held(sums, box, options), {.cut = parallel}).position;
-    for (int a = 0; a < 3; ++a)
-      if (cell.thin(a)) x[a] = box.lo[a];
-    return x;
-  }
-  const Vec3& n = planes[0]->normal;
-  Vec3 mass = sums.mass_point();
-  const Vec3 anchor = inside_section(cell, *planes[0], mass);
-  Vec3 u = vec::orthogonal(n), w = vec::cross(n, u);
-  if (count == 1) {  // along the line in which the border is cut
-    u = vec::unit(vec::cross(n, Vec3(thin == 0, thin == 1, thin == 2)));
-    w = Vec3(0, 0, 0);
-  }
-  const Vec3 off = vec::minus(mass, anchor);
-  const Vec3 start = vec::along(vec::along(anchor, vec::dot(u, off), u), vec::dot(w, off), w);
-  const Vec3 r = sums.descent(start), au = sums.applied(u), aw = sums.applied(w);
-  const Vec3 values = SymmetricEigen(sums.matrix()).values;
-  const auto step =
-      least_step(vec::dot(u, au), vec::dot(w, aw), vec::dot(u, aw), vec::dot(u, r), vec::dot(w, r),
-                 options.cut * std::max({0.0, values[0], values[1], values[2]}));
-  return within(box, anchor, vec::along(vec::along(start, step[0], u), step[1], w));
+  for (int a = 0; a < 3; ++a)
+    if (cell.thin(a)) add(cell.box.lo, Vec3(a == 0, a == 1, a == 2));
+  for (const HermiteRegion* p : cuts) add(vec::minus(p->point, cell.corner), p->normal);
+  const FlatSpan span({normals.data(), std::min<std::size_t>(planes, 3)});
+  const FlatSection section(cell, cuts, span);
+  constexpr double parallel = 1e-6;
+  const Vec3 from = section.empty() ? meeting.minimum(mean, {.cut = parallel}).position : section.middle();
+  RimPoint rim{vec::plus(from, span.part(vec::minus(mean, from))), false};
+  if (walls > 0 && planes < 3) rim = least_error_in(span, sums, from, options);
+  Vec3 x = rim.place;
+  const bool leaves =
+      planes == 1 && cuts.size() == 1 && walls > 1 && rim.smooth && within(cell.box, rim_reach, x);
+  // not all of the way: neighbours with the same crossings have the same rim
+  if (!section.empty()) x = vec::between(section.held(x, sums, hold), x, leaves ? rim_share : 0);
+  for (int a = 0; a < 3; ++a)
+    if (cell.thin(a)) x[a] = cell.box.lo[a];
+  return x;
 }
 
 }  // namespace tunica::meshing::detail

@@ -59,18 +59,22 @@ struct LeastErrorOptions {
   double smooth = 1;  // share of the step from the mass point where the surface is smooth: rank 1
 };
 
-/// The least norm step from `start` in two axes (matrix {{p, o}, {o, q}}, descent r, s) above the cut.
-[[nodiscard]] inline std::array<double, 2> least_step(double p, double q, double o, double r, double s,
-                                                      double cut) {
+struct LeastStep {
+  double x = 0, y = 0;
+  int rank = 0;
+};
+
+/// The least norm step in two axes (matrix {{p, o}, {o, q}}, descent r, s) above the cut.
+[[nodiscard]] inline LeastStep least_step(double p, double q, double o, double r, double s, double cut) {
   const double mean = 0.5 * (p + q), off = std::sqrt(0.25 * (p - q) * (p - q) + o * o);
   const double low = mean - off, high = mean + off;
   if (low > cut && low > 0) {
     const double share = 1 / (p * q - o * o);
-    return {share * (q * r - o * s), share * (p * s - o * r)};
+    return {share * (q * r - o * s), share * (p * s - o * r), 2};
   }
-  if (!(high > cut && high > 0)) return {0, 0};
+  if (!(high > cut && high > 0)) return {};
   const double share = 1 / (2 * off * high);  // projector (M - low) / (high - low)
-  return {share * ((p - low) * r + o * s), share * (o * r + (q - low) * s)};
+  return {share * ((p - low) * r + o * s), share * (o * r + (q - low) * s), 1};
 }
 
 /// The minimum where the surface is an edge, a corner, or leaves the box: that over the box, or on some of
@@ -120,10 +124,10 @@ struct LeastErrorOptions {
         for (int a = 0; a < 3; ++a) {
           const int b = (a + 1) % 3, c = (a + 2) % 3;
           if (held == 1 << a) {
-            const auto step =
+            const LeastStep step =
                 least_step(diagonal[static_cast<std::size_t>(b)], diagonal[static_cast<std::size_t>(c)],
                            beside[static_cast<std::size_t>(a)], r[b], r[c], cut);
-            x[b] += step[0], x[c] += step[1];
+            x[b] += step.x, x[c] += step.y;
           } else if (held == (7 ^ 1 << a)) {
             const double d = diagonal[static_cast<std::size_t>(a)];
             if (d > cut && d > 0) x[a] += r[a] / d;
