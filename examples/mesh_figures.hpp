@@ -5,13 +5,14 @@
 #include "cli.hpp"
 #include "json.hpp"
 #include "tunica/core/text.hpp"
-#include "tunica/mesh/quality.hpp"
+#include "tunica/mesh/quality_report.hpp"
 #include "tunica/mesh/topology.hpp"
 #include "tunica/meshing/handles.hpp"
 #include "tunica/meshing/remesh.hpp"
 #include "tunica/meshing/repair_report.hpp"
 #include "tunica/meshing/tetrahedra.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdio>
@@ -109,6 +110,64 @@ inline void tell_tetrahedra(const meshing::FillReport& r, const mesh::TetMesh& t
   j["left_out_folds"] = r.left_out.folds, j["left_out_crossings"] = r.left_out.crosses;
   j["kept_features"] = r.kept_features;
   return j;
+}
+
+/// Histograms and worst cells of a mesh for a report.
+[[nodiscard]] inline Json quality_figures(const std::vector<mesh::FigureReport>& figures) {
+  Json list;
+  for (const auto& f : figures) {
+    Json j;
+    j["figure"] = f.histogram.figure, j["unit"] = f.histogram.unit;
+    j["least"] = f.least, j["mean"] = f.mean;
+    j["edges"] = f.histogram.edges, j["histogram"] = f.histogram.count;
+    j["below"] = f.histogram.below, j["above"] = f.histogram.above;
+    j["worst"] = Json(std::vector<double>{});
+    for (const auto& w : f.worst) {
+      Json cell;
+      cell["cell"] = w.cell, cell["value"] = w.value, cell["place"] = w.place;
+      j["worst"].push(std::move(cell));
+    }
+    list.push(std::move(j));
+  }
+  return list;
+}
+
+/// The same as a short table: bins that hold something, and the three worst cells.
+[[nodiscard]] inline std::string quality_table(const std::string& name,
+                                               const std::vector<mesh::FigureReport>& figures) {
+  std::string text;
+  for (const auto& f : figures) {
+    const auto& h = f.histogram;
+    const std::string unit = h.unit == "-" ? "" : " [" + h.unit + "]";
+    text += name + ": " + h.figure + unit + ", least " + short_text(f.least) + ", mean " +
+            short_text(f.mean) + "\n";
+    double all = h.below + h.above;
+    for (const Index c : h.count) all += c;
+    const auto row = [&](const std::string& range, Index count) {
+      if (count == 0) return;
+      std::array<char, 96> line{};
+      std::snprintf(line.data(), line.size(), "  %-14s %10d  %6.2f %%\n", range.c_str(),
+                    static_cast<int>(count), 100 * count / all);
+      text += line.data();
+    };
+    row("below " + short_text(h.edges.front()), h.below);
+    for (std::size_t i = 0; i < h.count.size(); ++i)
+      row(short_text(h.edges[i]) + " to " + short_text(h.edges[i + 1]), h.count[i]);
+    row("above " + short_text(h.edges.back()), h.above);
+    constexpr std::size_t shown = 3;
+    for (std::size_t i = 0; i < std::min(shown, f.worst.size()); ++i)
+      text += std::string(i == 0 ? "  worst " : "        ") + short_text(f.worst[i].value) + " at " +
+              place(f.worst[i].place) + "\n";
+  }
+  return text;
+}
+
+/// Histograms and worst cells of a mesh go to the report, under "quality", and as a table to stdout.
+template <class Mesh>
+void tell_quality(const std::string& name, const Mesh& m, Json& report) {
+  const auto figures = mesh::quality_report(m);
+  report["quality"][name] = quality_figures(figures);
+  std::fputs(quality_table(name, figures).c_str(), stdout);
 }
 
 /// What a repair changed: a count of each kind, and the places of holes.

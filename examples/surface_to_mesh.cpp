@@ -75,7 +75,10 @@ int main(int argc, char** argv) {
       });
   cli.option("-o", "OUT.vtu", "the tetrahedra; their surface goes to OUT.surface.vtp (the surface's name)",
              out);
-  cli.option("--report", "FILE.json", "figures, and elapsed and CPU seconds of each stage", report_file);
+  cli.option("--report", "FILE.json",
+             "figures, histograms of quality, worst cells, and elapsed and CPU seconds of each stage;\n"
+             "the histograms are also printed",
+             report_file);
 
   return run_program(cli, argc, argv, [&] {
     const auto volume = mesh_file(out, in);
@@ -111,6 +114,8 @@ int main(int argc, char** argv) {
     }
     const auto filled = stage("fill", [&] { return meshing::tetrahedra(surface); });
     tell_tetrahedra(filled.report, filled.mesh, report);
+    if (!report_file.empty())
+      tell_quality("surface", surface, report), tell_quality("tetrahedra", filled.mesh, report);
     OutputFiles files;
     stage("write", [&] {
       files.write(volume, [&](const auto& path) { io::write_vtu(path, filled.mesh); });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/mesh/quality.hpp"
 
+#include "tunica/mesh/quality_report.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -90,5 +92,75 @@ TEST_SUITE("unit") {
     CHECK(q.mean_ratio.greatest == doctest::Approx(1));
     CHECK(q.longest_edge == doctest::Approx(1));
     CHECK(q.angle.quantile(0) == q.angle.least);
+  }
+
+  TEST_CASE("mesh: scaled Jacobians are one for regular cells and follow their corners") {
+    CHECK(mesh::scaled_jacobian(regular_tet()) == doctest::Approx(1).epsilon(1e-12));
+    auto mirrored = regular_tet();
+    std::swap(mirrored[0], mirrored[1]);
+    CHECK(mesh::scaled_jacobian(mirrored) == doctest::Approx(-1).epsilon(1e-12));
+    // the corner tetrahedron: det 1, longest product of edges 1 * sqrt2 * sqrt2 at nodes 1 to 3
+    const mesh::TetCorners corner{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+    CHECK(mesh::scaled_jacobian(corner) == doctest::Approx(std::numbers::sqrt2 / 2).epsilon(1e-12));
+    const mesh::Triangle right{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};  // its least sine is that of 45 degrees
+    CHECK(mesh::scaled_jacobian(right) == doctest::Approx(std::sqrt(2.0 / 3)).epsilon(1e-12));
+    CHECK(mesh::mean_ratio(brick(3, 3, 3)) == doctest::Approx(1).epsilon(1e-12));
+    CHECK(mesh::mean_ratio(brick(1, 1, 8)) == doctest::Approx(3 * 4.0 / 66).epsilon(1e-12));
+    auto inverted = brick(1, 1, 1);
+    inverted[6] = {0.2, 0.2, 0.2};
+    CHECK(mesh::mean_ratio(inverted) < 0);
+  }
+
+  TEST_CASE("mesh: histograms count every cell once and worst cells come with their places") {
+    mesh::Surface s;  // right triangles of legs 1 and k + 1, one beside the other
+    constexpr Index n = 40;
+    s.nodes.resize(3, 3 * n);
+    s.cells.resize(3, n);
+    for (Index k = 0; k < n; ++k) {
+      const Index i = (7 * k) % n;
+      s.nodes.col(3 * k) << 10 * k, 0, 0;
+      s.nodes.col(3 * k + 1) << 10 * k + 1, 0, 0;
+      s.nodes.col(3 * k + 2) << 10 * k, i + 1, 0;
+      s.cells.col(k) << 3 * k, 3 * k + 1, 3 * k + 2;
+    }
+    const auto figures = mesh::quality_report(s);
+    REQUIRE(figures.size() == 3);
+    for (const auto& f : figures) {
+      Index all = f.histogram.below + f.histogram.above;
+      for (const Index c : f.histogram.count) all += c;
+      CHECK(all == n);
+      CHECK(f.histogram.count.size() + 1 == f.histogram.edges.size());
+      REQUIRE(f.worst.size() == mesh::Spread::most_worst);
+      for (Index w = 0; w < 10; ++w) {  // the longest: legs 40, 39 ...
+        const auto& cell = f.worst[static_cast<std::size_t>(w)];
+        CHECK((7 * cell.cell) % n == n - 1 - w);
+        CHECK(cell.place[0] == doctest::Approx(10 * cell.cell + 1.0 / 3));
+        CHECK(cell.value == doctest::Approx(f.least).epsilon(w == 0 ? 1e-12 : 1));
+      }
+    }
+    Index below_five = 0;  // degrees: a leg of 12 or more
+    for (Index k = 1; k <= n; ++k) below_five += mesh::degrees(std::atan(1.0 / k)) < 5;
+    CHECK(figures[0].histogram.count[0] + figures[0].histogram.count[1] == below_five);
+    CHECK(figures[0].histogram.figure == "smallest angle");
+    mesh::TetMesh m;  // one regular and one inverted: the last bin and below all
+    const auto x = regular_tet();
+    m.nodes.resize(3, 4);
+    for (int k = 0; k < 4; ++k) m.nodes.col(k) = x[static_cast<std::size_t>(k)];
+    m.cells.resize(4, 2);
+    m.cells << 0, 1, 1, 0, 2, 2, 3, 3;
+    for (const auto& f : mesh::quality_report(m)) {
+      if (f.histogram.unit == "degrees") continue;
+      CHECK(f.histogram.count.back() == 1);
+      CHECK(f.histogram.below == 1);
+      CHECK(f.histogram.above == 0);
+      CHECK(f.worst.front().cell == 1);
+    }
+    mesh::HexMesh cube;
+    cube.nodes.resize(3, 8);
+    for (int k = 0; k < 8; ++k) cube.nodes.col(k) = brick(1, 1, 1)[static_cast<std::size_t>(k)];
+    cube.cells.resize(8, 1);
+    for (Index k = 0; k < 8; ++k) cube.cells(k, 0) = k;
+    for (const auto& f : mesh::quality_report(cube)) CHECK(f.histogram.count.back() == 1);
+    CHECK(mesh::quality_report(mesh::HexMesh{}).front().worst.empty());
   }
 }

@@ -75,6 +75,18 @@ TEST_SUITE("job") {
       CHECK(std::abs(figure(report.substr(report.find(name)), {"area"}) - area) <
             1);  // the ends of the vessel
     CHECK(faults(*checker, folder, "a.vtu --surface a.surface.vtp --tol 0") == "");
+    // histograms and worst cells: in the report and as a table
+    for (const std::string part :
+         {"surface: smallest angle [degrees], least 2", "surface: mean ratio, least 0",
+          "tetrahedra: smallest dihedral angle [degrees], least 18", "tetrahedra: scaled Jacobian, least 0",
+          "\n  20 to 25 ", "\n  worst 18 at ("})
+      CHECK_MESSAGE(has(o.out, part), part, " in\n", o.out);
+    const std::string tets = report.substr(report.find("\"tetrahedra\": [", report.find("\"quality\"")));
+    CHECK(has(tets, "\"figure\": \"smallest dihedral angle\""));
+    CHECK(has(tets, "\"histogram\": ["));
+    for (const auto& keys : {std::vector<std::string>{"least"}, {"worst", "value"}})
+      CHECK(figure(tets, keys) ==
+            doctest::Approx(figure(report, {"fill", "smallest_dihedral_degrees"})).epsilon(1e-9));
   }
 
   TEST_CASE("surface_to_mesh: the two real surfaces are filled as given and remeshed") {

@@ -95,13 +95,48 @@ inline constexpr std::array<std::array<int, 3>, 8> hex_corner_axes{
   return std::min(least, scaled(u, v, w));
 }
 
-/// Spread of one figure over the cells of a mesh, with the cell where it is worst (least).
+/// Scaled Jacobian of a tetrahedron [KNUPP00]: least over corners of sqrt(2) det of the unit edge vectors; 1
+/// regular, <= 0 inverted.
+[[nodiscard]] inline double scaled_jacobian(const TetCorners& x) {
+  const auto edge = [&](std::size_t a, std::size_t b) { return vec::distance(x[a], x[b]); };
+  double longest = 0;  // product of the three edges at a corner
+  for (std::size_t c = 0; c < 4; ++c)
+    longest = std::max(longest, edge(c, (c + 1) % 4) * edge(c, (c + 2) % 4) * edge(c, (c + 3) % 4));
+  return longest > 0 ? std::numbers::sqrt2 * 6 * tet_volume(x[0], x[1], x[2], x[3]) / longest : 0;
+}
+
+/// Scaled Jacobian of a triangle: least over corners of the sine of the angle, over that of 60 degrees.
+[[nodiscard]] inline double scaled_jacobian(const Triangle& t) {
+  const double p = vec::distance(t.a, t.b), q = vec::distance(t.b, t.c), r = vec::distance(t.c, t.a);
+  const double longest = std::max({p * q, q * r, r * p});
+  return longest > 0 ? 2 / std::numbers::sqrt3 * 2 * t.area() / longest : 0;
+}
+
+/// Least over corners of the mean ratio 3 det^(2/3) / sum l^2 of its three edges [KNUPP00]: 1 for a cube,
+/// <= 0 inverted.
+[[nodiscard]] inline double mean_ratio(const HexCorners& x) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < 8; ++c) {
+    std::array<Vec3, 3> e;
+    for (std::size_t a = 0; a < 3; ++a)
+      e[a] = vec::minus(x[static_cast<std::size_t>(hex_corner_axes[c][a])], x[c]);
+    const double l2 = vec::squared(e[0]) + vec::squared(e[1]) + vec::squared(e[2]);
+    const double d = std::cbrt(vec::dot(vec::cross(e[0], e[1]), e[2]));
+    least = std::min(least, l2 > 0 ? std::copysign(3 * d * d / l2, d) : 0);
+  }
+  return least;
+}
+
+/// Spread of one figure over the cells of a mesh, with the cells where it is worst (least).
 struct [[nodiscard]] Spread {
   double least = std::numeric_limits<double>::infinity();
   double greatest = -std::numeric_limits<double>::infinity();
   double mean = 0;
   Index worst_cell = -1;
   std::vector<double> sorted;  // ascending, one value a cell
+  std::vector<Index> worst;    // the worst cells, at most `most_worst`, the worst first
+
+  static constexpr std::size_t most_worst = 10;
 
   /// The value below which the fraction q of the cells lies, 0 <= q <= 1.
   [[nodiscard]] double quantile(double q) const {
@@ -121,6 +156,13 @@ template <class Figure>
   s.sorted.reserve(static_cast<std::size_t>(count));
   for (Index c = 0; c < count; ++c) {
     const double q = figure(c);
+    std::size_t at = s.worst.size();
+    for (; at > 0 && q < s.sorted[static_cast<std::size_t>(s.worst[at - 1])]; --at) {
+    }
+    if (at < Spread::most_worst) {
+      if (s.worst.size() == Spread::most_worst) s.worst.pop_back();
+      s.worst.insert(s.worst.begin() + static_cast<std::ptrdiff_t>(at), c);
+    }
     if (q < s.least || s.worst_cell < 0) s.least = q, s.worst_cell = c;
     s.greatest = std::max(s.greatest, q);
     s.mean += q;
