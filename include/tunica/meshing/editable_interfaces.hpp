@@ -77,7 +77,7 @@ class EditableInterfaces : public InterfaceRings {
     }
     std::sort(keys.begin(), keys.end());
     if (std::adjacent_find(keys.begin(), keys.end()) != keys.end()) return false;
-    const Before before = measure(gone);
+    const Before before = measure(gone, a);
     const Vec3 from = x(a), other = x(b);
     const bool even = kind_a == kind_b && s_.frozen[at(a)] == s_.frozen[at(b)];
     for (const double share : {0.5, 0.0, 1.0}) {
@@ -105,7 +105,7 @@ class EditableInterfaces : public InterfaceRings {
     const std::vector<Index> gone = ring_[at(n)];
     std::vector<Made> made;
     for (const Index t : gone) made.push_back({nodes(t), s_.sides[at(t)]});
-    const Before before = measure(gone);
+    const Before before = measure(gone, n);
     const Vec3 from = std::exchange(s_.nodes[at(n)], to);
     const bool good = allowed(made, gone, before, most_turn, std::min(least_moved, before.angle));
     s_.nodes[at(n)] = from;
@@ -121,12 +121,15 @@ class EditableInterfaces : public InterfaceRings {
     const std::vector<Index> gone = sides(a, b);
     if (gone.size() != 2 || s_.sides[at(gone[0])] != s_.sides[at(gone[1])]) return false;
     const Index c = third(nodes(gone[0]), a, b), d = third(nodes(gone[1]), a, b);
+    const auto angle = [&](Index p, Index q, Index r) { return triangle({p, q, r}).smallest_angle(); };
+    if (!(std::min(angle(a, d, c), angle(d, b, c)) > std::min(angle(a, b, c), angle(b, a, d)) * (1 + 1e-6)))
+      return false;
     if (c == d || !sides(c, d).empty()) return false;
     const Before before = measure(gone);
     std::vector<Made> made{{nodes(gone[0]), s_.sides[at(gone[0])]}, {nodes(gone[0]), s_.sides[at(gone[0])]}};
     for (Index& v : made[0].nodes) v = v == a ? d : v;
     for (Index& v : made[1].nodes) v = v == b ? d : v;
-    if (!allowed(made, gone, before, flip_turn, before.angle * (1 + 1e-6))) return false;
+    if (!allowed(made, gone, before, flip_turn, before.angle)) return false;
     exchange(gone, made);
     return true;
   }
@@ -163,7 +166,8 @@ class EditableInterfaces : public InterfaceRings {
         return false;
       if (!(f.smallest_angle() >= least_angle)) return false;
     }
-    if (sharpest(made, gone) > std::max(sharp, before.fold + 1e-12)) return false;
+    if (const double fold = sharpest(made, gone); fold > sharp && fold > sharpest(gone, before) + 1e-12)
+      return false;
     const auto position = [&](Index n) { return x(n); };
     for (const Made& m : made)
       if (grid_.any(triangle(m.nodes).box(),

@@ -27,6 +27,7 @@ class InterfaceRelax {
   explicit InterfaceRelax(Interfaces& s)
       : s_(s), edges_(edges_of(s)), start_(s.nodes), share_(s.nodes.size(), 1) {
     find_neighbours();
+    ring_ = mesh::cells_of_nodes(s.surface().cells, s.node_count());
     for (const InterfaceEdge& e : edges_.edges) folded_.push_back(folded(e));
     for (std::size_t t = 0; t < s.faces.size(); ++t) thin_.push_back(s.triangle(t).smallest_angle());
   }
@@ -127,33 +128,43 @@ class InterfaceRelax {
     constexpr double sharp = 0.94;  // cosine of 20 degrees
     constexpr double thin = 0.26;   // [rad] 15 degrees
     constexpr double least_share = 0.1;
-    bool any = false;
-    const auto ring = mesh::cells_of_nodes(s_.surface().cells, s_.node_count());
     const std::vector<Vec3> moved = s_.nodes;
-    std::vector<double> whole(moved.size(), 1);  // the part of the way that each node goes
+    std::vector<double> whole(moved.size(), 1);     // the part of the way that each node goes
+    std::vector<char> fresh(moved.size(), 1), bad;  // nodes that have moved since the last look
+    bool any = false;
     for (bool again = true; again;) {
-      std::vector<char> bad(s_.nodes.size(), 0);
       again = false;
-      const auto mark = [&](Index n) {
-        for (const Index t : ring[n])
-          for (const Index m : s_.faces[static_cast<std::size_t>(t)]) bad[static_cast<std::size_t>(m)] = 1;
+      bad.assign(moved.size(), 0);
+      const auto is_fresh = [&](std::size_t t) {
+        const auto& f = s_.faces[t];
+        return (fresh[at(f[0])] | fresh[at(f[1])] | fresh[at(f[2])]) != 0;
       };
-      for (const auto& [t, u] : self_intersections(s_.surface()))
-        for (const Index f : {t, u})
-          for (const Index n : s_.faces[static_cast<std::size_t>(f)]) mark(n);
-      for (std::size_t e = 0; e < edges_.edges.size(); ++e)
-        if (const double now = folded(edges_.edges[e]); now > sharp && now > folded_[e] + 1e-9) {
-          mark(edges_.edges[e].a), mark(edges_.edges[e].b);
-          for (Index k = edges_.edges[e].first; k < edges_.edges[e].last; ++k)
-            for (const Index n :
-                 s_.faces[static_cast<std::size_t>(edges_.triangle[static_cast<std::size_t>(k)])])
-              bad[static_cast<std::size_t>(n)] = 1;
-        }
+      const auto mark = [&](Index n) {
+        for (const Index t : ring_[n])
+          for (const Index m : s_.faces[at(t)]) bad[at(m)] = 1;
+      };
+      crossings(is_fresh, [&](std::size_t t) {
+        for (const Index n : s_.faces[t]) mark(n);
+      });
+      for (std::size_t e = 0; e < edges_.edges.size(); ++e) {
+        const auto of_edge = [&](Index k) { return at(edges_.triangle[at(k)]); };
+        const InterfaceEdge& edge = edges_.edges[e];
+        bool look = false;
+        for (Index k = edge.first; k < edge.last; ++k) look = look || is_fresh(of_edge(k));
+        if (!look) continue;
+        const double now = folded(edge);
+        if (!(now > sharp && now > folded_[e] + 1e-9)) continue;
+        mark(edge.a), mark(edge.b);
+        for (Index k = edge.first; k < edge.last; ++k)
+          for (const Index n : s_.faces[of_edge(k)]) bad[at(n)] = 1;
+      }
       for (std::size_t t = 0; t < thin_.size(); ++t)
-        if (const double now = s_.triangle(t).smallest_angle(); now < thin && now < thin_[t] - 1e-9)
-          for (const Index n : s_.faces[t]) bad[static_cast<std::size_t>(n)] = 1;
+        if (is_fresh(t))
+          if (const double now = s_.triangle(t).smallest_angle(); now < thin && now < thin_[t] - 1e-9)
+            for (const Index n : s_.faces[t]) bad[at(n)] = 1;
       for (std::size_t n = 0; n < bad.size(); ++n) {
-        if (bad[n] == 0 || whole[n] == 0) continue;
+        fresh[n] = bad[n] != 0 && whole[n] > 0;
+        if (fresh[n] == 0) continue;
         whole[n] = whole[n] < least_share ? 0 : 0.5 * whole[n];
         share_[n] = std::min(share_[n], 0.5);
         for (int a = 0; a < 3; ++a)
@@ -165,6 +176,32 @@ class InterfaceRelax {
     return any;
   }
 
+  /// Calls act(t) for the triangles that cross another one or have no area, where one of the two is fresh.
+  template <class Fresh, class Act>
+  void crossings(const Fresh& is_fresh, const Act& act) const {
+    std::vector<Box> boxes(s_.faces.size());
+    for (std::size_t t = 0; t < boxes.size(); ++t) boxes[t] = s_.triangle(t).box();
+    const search::Octree tree(boxes);
+    const auto position = [&](Index n) { return s_.at(n); };
+    for (std::size_t t = 0; t < boxes.size(); ++t) {
+      if (!is_fresh(t)) continue;
+      if (detail::projection_axis(s_.triangle(t)) < 0) {
+        act(t);
+        continue;
+      }
+      tree.overlapping(boxes[t], [&](Index other) {
+        const std::size_t u = at(other);
+        if (u == t || (u < t && is_fresh(u)) || detail::projection_axis(s_.triangle(u)) < 0) return;
+        if (cross(s_.faces[t], s_.faces[u], position)) act(t), act(u);
+      });
+    }
+  }
+
+  template <class I>
+  [[nodiscard]] static std::size_t at(I i) {
+    return static_cast<std::size_t>(i);
+  }
+
   Interfaces& s_;
   InterfaceEdges edges_;
   std::vector<Vec3> start_;
@@ -173,6 +210,7 @@ class InterfaceRelax {
   std::vector<double> thin_;    // smallest angle of each triangle at the start [rad]
   std::vector<std::size_t> offset_;
   std::vector<Index> near_;
+  mesh::Rows ring_;  // triangles of each node
 };
 
 }  // namespace tunica::meshing

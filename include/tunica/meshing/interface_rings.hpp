@@ -96,10 +96,13 @@ class InterfaceRings {
     Nodes nodes;
     Sides sides;
   };
-  /// The triangles that an edit replaces: the sum of their normals by sides, sharpest fold, smallest angle.
+  /// The triangles that an edit replaces: the sum of their normals by sides, their smallest angle, and where
+  /// a node that moves was.
   struct Before {
     std::vector<std::pair<Sides, Vec3>> normals;
-    double fold = -1, angle = std::numeric_limits<double>::infinity();
+    double angle = std::numeric_limits<double>::infinity();
+    Index node = -1;
+    Vec3 place{0, 0, 0};
   };
   template <class I>
   [[nodiscard]] static std::size_t at(I i) {
@@ -155,11 +158,11 @@ class InterfaceRings {
     for (const Made& m : made) add_gains(list, m.nodes, m.sides, origin, 1);
     return list;
   }
-  [[nodiscard]] Before measure(std::span<const Index> gone) const {
+  [[nodiscard]] Before measure(std::span<const Index> gone, Index node = -1) const {
     Before b;
-    std::vector<Made> old;
+    b.node = node;
+    if (node >= 0) b.place = x(node);
     for (const Index t : gone) {
-      old.push_back({nodes(t), s_.sides[at(t)]});
       const mesh::Triangle f = triangle(nodes(t));
       b.angle = std::min(b.angle, f.smallest_angle());
       auto it = std::find_if(b.normals.begin(), b.normals.end(),
@@ -167,8 +170,18 @@ class InterfaceRings {
       if (it == b.normals.end()) it = b.normals.insert(it, {s_.sides[at(t)], Vec3(0, 0, 0)});
       it->second = vec::plus(it->second, f.area_vector());
     }
-    b.fold = sharpest(old, gone);
     return b;
+  }
+
+  /// The sharpest fold of the triangles that an edit replaces, where they were.
+  [[nodiscard]] double sharpest(std::span<const Index> gone, const Before& before) {
+    std::vector<Made> old;
+    for (const Index t : gone) old.push_back({nodes(t), s_.sides[at(t)]});
+    if (before.node < 0) return sharpest(old, gone);
+    const Vec3 now = std::exchange(s_.nodes[at(before.node)], before.place);
+    const double fold = sharpest(old, gone);
+    s_.nodes[at(before.node)] = now;
+    return fold;
   }
 
   /// The smallest angle between sheets at the edges of the triangles, as a cosine; those gone do not count.
