@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cli.hpp"
-#include "image_pipeline.hpp"
+#include "image_options.hpp"
 #include "tunica/core/text.hpp"
 #include "tunica/core/units.hpp"
 #include "tunica/io/crc32.hpp"
@@ -44,8 +44,6 @@ struct Options {
       throw UsageError("--end must be a whole number of steps of --dt");
     if (checkpoint < 1) throw UsageError("--checkpoint must be 1 or more");
     if (threads < 0) throw UsageError("--threads must be 1 or more");
-    if (image.fill == examples::Fill::none)
-      throw UsageError("--fill none leaves nothing for the blood to flow in");
     if (!image.edge) image.edge = (paper() ? 1.03_mm : 2_mm) / unit;
     if (!(*image.edge > 0)) throw UsageError("--edge must be positive here: the wall needs it as well");
     if (!image.image.empty() && image.cuts.size() < 2)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cli.hpp"
+#include "image_options.hpp"
 #include "json.hpp"
 #include "mesh_figures.hpp"
 #include "stages.hpp"
@@ -27,74 +28,26 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace tunica::examples {
 
-enum class Contourer { marching_cubes, dual_contouring };
-enum class Fill { tets, none };
-
-struct ImageOptions {
-  std::string image{};                 // a VTK file; empty: the phantom, with its iso-value and ports
-  std::optional<double> iso{};         // inside is value >= iso
-  std::optional<image::Voxel> seed{};  // none: the largest component
-  std::vector<meshing::Cut> cuts{};    // in order; unnamed ones become "cut 1", "cut 2" ...
-  Contourer surface = Contourer::marching_cubes;
-  Fill fill = Fill::tets;
-  std::optional<double> edge{};  // 0 keeps the contourer's triangles; none: 1.5 largest spacing
-  int smooth = 20;               // sweeps
+/// The image, the voxels of the vessel, and the options with what the image settles of them.
+struct [[nodiscard]] ImageVessel {
+  ImageOptions options;  // iso has a value
+  image::Image<float> image;
+  image::Region region;
+  double edge = 0;      // target length, 0: the contourer's triangles
+  double smallest = 0;  // spacing of the voxels
 };
 
 /// What the image became, in its unit.
 struct [[nodiscard]] ImageMeshes {
   mesh::Surface surface;  // closed; regions: wall, the cuts in their order, the borders of the image
-  mesh::TetMesh tets;     // its nodes begin with those of the surface; empty with Fill::none
+  mesh::TetMesh tets;     // its nodes begin with those of the surface
 };
-
-[[nodiscard]] inline meshing::Cut cut_of(const std::string& text) {
-  const auto v = numbers_of<double>(text);
-  if (v.size() != 6 && v.size() != 7)
-    throw UsageError("a cut is px,py,pz,nx,ny,nz or with a radius at the end");
-  meshing::Cut cut{.point = {v[0], v[1], v[2]}, .normal = {v[3], v[4], v[5]}, .name = ""};
-  if (!(cut.normal.norm() > 0) || !cut.point.allFinite() || !cut.normal.allFinite())
-    throw UsageError("the normal of a cut must have a length");
-  if (v.size() == 7) cut.radius = v[6];
-  if (!(cut.radius > 0)) throw UsageError("the radius of a cut must be positive");
-  return cut;
-}
-
-/// edge_default: what holds without --edge, for --help.
-inline void add_image_options(Cli& cli, ImageOptions& o,
-                              const std::string& edge_default = "1.5 times the largest spacing") {
-  cli.option("--iso", "V", "iso-value: inside is value >= V", o.iso);
-  cli.option("--seed", "i,j,k", "a voxel of the vessel (none: the largest component)",
-             [&o](const std::string& text) {
-               const auto v = numbers_of<Index>(text);
-               if (v.size() != 3) throw UsageError("a seed is i,j,k");
-               o.seed = image::Voxel{v[0], v[1], v[2]};
-             });
-  cli.repeated("--cut", "px,py,pz,nx,ny,nz[,r]",
-               "a plane, outward normal, or with r a disc that severs only the vessel it crosses",
-               [&o](const std::string& text) { o.cuts.push_back(cut_of(text)); });
-  cli.choice<Contourer>(
-      "--surface", "how the surface is contoured",
-      {{"marching-cubes", Contourer::marching_cubes}, {"dual-contouring", Contourer::dual_contouring}},
-      o.surface);
-  cli.choice<Fill>("--fill", "what fills it", {{"tets", Fill::tets}, {"none", Fill::none}}, o.fill);
-  cli.option("--edge", "L", "edge length (none: " + edge_default + "; 0: the contourer's triangles)",
-             [&o](const std::string& text) {
-               o.edge = number_of<double>(text);
-               if (!(*o.edge >= 0 && std::isfinite(*o.edge))) throw UsageError("must be 0 or more");
-             });
-  cli.option("--smooth", "N", "sweeps of smoothing that keeps the volume (20)",
-             [&o](const std::string& text) {
-               o.smooth = number_of<int>(text);
-               if (o.smooth < 0) throw UsageError("must be 0 or more");
-             });
-}
 
 namespace detail {
 
@@ -170,30 +123,35 @@ struct Spacing {
 
 }  // namespace detail
 
-/// The whole path; figures go to the report, warnings to it and to stderr. InputError or MeshError
-/// name what cannot be used. Seven stages.
-inline constexpr int image_stages = 7;
-[[nodiscard]] inline ImageMeshes mesh_image(ImageOptions o, Stages& stage, Json& report) {
-  ImageMeshes out;
-  mesh::Surface& s = out.surface;
+/// Reads the image and finds the vessel; figures go to the report, warnings to it and to stderr. InputError
+/// names what cannot be used. Two stages.
+inline constexpr int segment_stages = 2;
+[[nodiscard]] inline ImageVessel segment_image(const ImageOptions& options, Stages& stage, Json& report) {
+  ImageVessel v{.options = options, .image = {}, .region = {}};
+  ImageOptions& o = v.options;
   report["warnings"] = Json(std::vector<std::string>{});
-  const auto image = stage("read", [&] { return detail::load(o, report); });
-
-  const auto region =
-      stage("segment", [&] { return image::segment(image, {.iso = *o.iso, .seed = o.seed}); });
+  v.image = stage("read", [&] { return detail::load(o, report); });
+  v.region = stage("segment", [&] { return image::segment(v.image, {.iso = *o.iso, .seed = o.seed}); });
   Json& segment = report["segmentation"];
-  segment["iso"] = *o.iso, segment["voxels"] = region.voxels;
+  segment["iso"] = *o.iso, segment["voxels"] = v.region.voxels;
   segment["touches"] = Json(std::vector<std::string>{});
   for (std::size_t f = 0; f < 6; ++f)
-    if (region.touches[f]) segment["touches"].push(image::face_names[f]);
+    if (v.region.touches[f]) segment["touches"].push(image::face_names[f]);
+  const auto spacing = detail::spacing_of(v.image);
+  v.edge = o.edge.value_or(1.5 * spacing.largest), v.smallest = spacing.smallest;
+  return v;
+}
 
-  const auto spacing = detail::spacing_of(image);
-  const double edge = o.edge.value_or(1.5 * spacing.largest);
+/// The smoothed contour of the vessel between its cuts. MeshError names what cannot be done. Three stages.
+inline constexpr int surface_stages = 3;
+[[nodiscard]] inline mesh::Surface surface_of(const ImageVessel& v, Stages& stage, Json& report) {
+  const ImageOptions& o = v.options;
   Json borders, specks;
-  s = stage("contour", [&] {
-    auto made = detail::without_specks(detail::contour(image, region, o, borders), edge, specks, report);
+  mesh::Surface s = stage("contour", [&] {
+    auto made =
+        detail::without_specks(detail::contour(v.image, v.region, o, borders), v.edge, specks, report);
     if (o.surface == Contourer::dual_contouring) {  // its faces lie outside of what is convex, and may cross
-      meshing::level(made, image, *o.iso, {.reach = 0.25 * spacing.smallest});
+      meshing::level(made, v.image, *o.iso, {.reach = 0.25 * v.smallest});
       if (const auto tangled = meshing::untangle(made); tangled.crossings_after > 0)
         warn(report, "the contour still crosses itself: " +
                          count_text(tangled.crossings_after, "pair", "pairs") + " of triangles");
@@ -215,7 +173,7 @@ inline constexpr int image_stages = 7;
 
   stage("cut", [&] {
     meshing::CutOptions how;
-    if (o.seed) how.seed = image.position(*o.seed);
+    if (o.seed) how.seed = v.image.position(*o.seed);
     auto cut = meshing::cut(std::move(s), o.cuts, how);
     s = std::move(cut.surface);
     for (const auto& c : cut.cuts) {
@@ -226,29 +184,44 @@ inline constexpr int image_stages = 7;
     }
     report["cut_volume"] = mesh::enclosed_volume(s);
   });
-
-  stage("remesh", [&] {
-    report["edge"] = edge;
-    if (!(edge > 0)) return;
-    if (o.fill == Fill::tets) require_countable(s, edge);
-    auto remeshed = meshing::remesh(s, {.edge = edge});
-    s = std::move(remeshed.surface);
-    report["remesh"] = remesh_figures(remeshed.report);
-  });
-  const auto made = mesh::topology(s);
-  report["surface"] = surface_figures(s, made);
-  if (made.components.size() > contoured.components.size())
-    for (const auto& c : made.components)
-      warn(report, "the cuts leave " + std::to_string(made.components.size()) + " parts; one of volume " +
+  const auto left = mesh::topology(s);
+  if (left.components.size() > contoured.components.size())
+    for (const auto& c : left.components)
+      warn(report, "the cuts leave " + std::to_string(left.components.size()) + " parts; one of volume " +
                        short_text(c.volume) + " is at " + place(c.centre));
   for (std::size_t r = 0; r < s.region_names.size(); ++r)
     if (s.region_names[r].rfind(meshing::border_prefix, 0) == 0)
       warn(report, "the vessel leaves the image: patch " + std::to_string(r) + " is its flat end at " +
                        s.region_names[r]);
+  return s;
+}
 
+/// Triangles of the edge length asked for; remesh() makes them of a surface. One stage.
+template <class Remesh>
+[[nodiscard]] mesh::Surface remeshed(mesh::Surface s, const ImageVessel& v, Stages& stage, Json& report,
+                                     Remesh&& remesh) {
+  stage("remesh", [&] {
+    report["edge"] = v.edge;
+    if (!(v.edge > 0)) return;
+    auto made = remesh(s);
+    s = std::move(made.surface);
+    report["remesh"] = remesh_figures(made.report);
+  });
+  report["surface"] = surface_figures(s, mesh::topology(s));
+  return s;
+}
+
+/// The whole path to tetrahedra. Seven stages.
+inline constexpr int image_stages = segment_stages + surface_stages + 2;
+[[nodiscard]] inline ImageMeshes mesh_image(const ImageOptions& options, Stages& stage, Json& report) {
+  const auto vessel = segment_image(options, stage, report);
+  ImageMeshes out;
+  out.surface = remeshed(surface_of(vessel, stage, report), vessel, stage, report, [&](const auto& s) {
+    require_countable(s, vessel.edge);
+    return meshing::remesh(s, {.edge = vessel.edge});
+  });
   stage("fill", [&] {
-    if (o.fill == Fill::none) return;
-    auto filled = meshing::tetrahedra(s);
+    auto filled = meshing::tetrahedra(out.surface);
     out.tets = std::move(filled.mesh);
     tell_tetrahedra(filled.report, out.tets, report);
   });

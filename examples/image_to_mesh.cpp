@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// image_to_mesh: a medical image to a closed, capped, remeshed surface and its tetrahedra.
-#include "image_pipeline.hpp"
+// image_to_mesh: a medical image to a closed, capped surface and the volume mesh that it bounds.
+#include "image_fill.hpp"
 #include "output_files.hpp"
 #include "tunica/io/vtp.hpp"
 #include "tunica/io/vtu.hpp"
@@ -13,26 +13,37 @@ using namespace tunica::examples;
 
 int main(int argc, char** argv) {
   ImageOptions options;
+  FillChoice fill;
   std::string out, report_file;
   Cli cli("image_to_mesh",
-          "From an image (VTK legacy) to a surface and tetrahedra, in the unit of the image.");
-  cli.argument("IMAGE", "the image", options.image);
+          "From an image (VTK legacy) to a surface and a volume mesh, in the unit of the image.");
+  cli.argument("IMAGE", "the image, or the word phantom: a bifurcation that needs no file", options.image);
   add_image_options(cli, options);
-  cli.option("-o", "OUT.vtu", "the tetrahedra; the surface goes to OUT.surface.vtp (the image's name)", out);
+  add_fill_options(cli, fill);
+  cli.option("-o", "OUT.vtu", "the volume mesh; its surface goes to OUT.surface.vtp (the image's name)", out);
   cli.option("--report", "FILE.json", "figures, and elapsed and CPU seconds of each stage", report_file);
 
   return run_program(cli, argc, argv, [&] {
     if (options.image.empty()) throw UsageError("IMAGE is empty");
+    require_sense(fill, options);
     const auto volume = mesh_file(out, options.image);
+    if (options.image == "phantom") options.image.clear();
     expect_outputs(volume, report_file);
-    Stages stage(image_stages + 1);
+    Stages stage(fill_stages(fill.fill) + 1);
     Json report;
-    const auto [surface, tets] = mesh_image(options, stage, report);
+    const auto vessel = fill_image(options, fill, stage, report);
     OutputFiles files;
     stage("write", [&] {
-      if (options.fill == Fill::tets)
-        files.write(volume, [&](const auto& path) { io::write_vtu(path, tets); });
-      files.write(surface_file(volume), [&](const auto& path) { io::write_vtp(path, surface); });
+      if (vessel.tets.cell_count() > 0)
+        files.write(volume, [&](const auto& path) { io::write_vtu(path, vessel.tets); });
+      if (vessel.hexes.cell_count() > 0)
+        files.write(volume, [&](const auto& path) { io::write_vtu(path, vessel.hexes); });
+      files.write(surface_file(volume), [&](const auto& path) {
+        if (vessel.hexes.cell_count() > 0)
+          io::write_vtp(path, vessel.quads);
+        else
+          io::write_vtp(path, vessel.triangles);
+      });
     });
     finish(files, stage, report, report_file);
   });

@@ -217,7 +217,15 @@ TEST_SUITE("job") {
     refused(*good, " --iso", 2, "--iso: \"-o\" is not a number");
     refused(*good, " --iso 1 --edge -1", 2, "--edge");
     refused(*good, " --iso 1 --smooth 1.5", 2, "--smooth: \"1.5\" is not a whole number");
-    refused(*good, " --iso 1 --fill hexes", 2, "is none of tets|none");
+    refused(*good, " --iso 1 --fill hexagons", 2, "is none of tets|hexes|voxels|none");
+    refused(*good, " --iso 1 --fill hexes --layers 2", 2, "--layers needs --fill tets");
+    refused(*good, " --iso 1 --layers -1", 2, "--layers: must be 0 or more");
+    refused(*good, " --iso 1 --fill voxels --size-from diameter", 2, "--size-from needs --fill tets or none");
+    refused(*good, " --iso 1 --size-from curvature --edge 0", 2,
+            "--size-from needs an --edge of more than 0");
+    refused(*good, " --iso 1 --fill hexes --edge 0", 2, "--fill hexes needs an --edge of more than 0");
+    refused(*good, " --iso 1 --fill voxels --edge 1", 2, "--fill voxels has the edges of the voxels");
+    refused(*good, " --iso 1299.5 --fill voxels --cut 0,0,0,0,0,1", 1, "cut 1 leaves no voxel");
     refused(*good, " --iso 1 --cut 1,2,3", 2, "a cut is px,py,pz,nx,ny,nz");
     refused(*good, " --iso 1 --cut 1,2,3,0,0,0", 2, "must have a length");
     refused(*good, " --iso 1 -o b.vtk", 2, "-o");
@@ -271,8 +279,8 @@ TEST_SUITE("job") {
     const Folder folder;
     const auto help = run(folder, program("image_to_mesh") + " --help");
     CHECK(help.status == 0);
-    for (const std::string word :
-         {"--iso", "--seed", "--cut", "--surface", "--fill", "--edge", "--smooth", "-o", "--report"})
+    for (const std::string word : {"--iso", "--seed", "--cut", "--surface", "--fill", "--size-from",
+                                   "--layers", "--edge", "--smooth", "-o", "--report"})
       CHECK(has(help.out, word));
     CHECK(run(folder, program("image_to_mesh")).status == 2);
   }
