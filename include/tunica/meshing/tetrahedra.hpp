@@ -199,6 +199,8 @@ FillResult tetrahedra(const mesh::Surface& surface, const FillOptions& options, 
   detail::measure_surface(front, nodes, measured);
   // Flat tetrahedra that the surface does not ask for send the filler on to the next way.
   constexpr double flat = 0.1;  // [degrees]
+  constexpr int most_fillings = 3;
+  int fillings = 0;
   const double bound = std::min(measured.surface_min_angle, measured.surface_min_dihedral);
   const double poor = bound > flat ? std::min(flat, 0.5 * bound) : 0;
   const double target = std::sin(options.target_angle * std::numbers::pi / 180);
@@ -212,7 +214,8 @@ FillResult tetrahedra(const mesh::Surface& surface, const FillOptions& options, 
   };
   for (const detail::FillWay& way : detail::fill_ways) {
     const bool last = &way == &detail::fill_ways.back();
-    if (best.report.tetrahedra > 0 && (best.report.min_dihedral >= poor || last)) break;
+    const bool enough = best.report.min_dihedral >= poor || last || fillings == most_fillings;
+    if (best.report.tetrahedra > 0 && enough) break;
     if (way.stretched && even) continue;
     LatticeOptions lattice{.edge = options.lattice_edge, .clearance = options.clearance};
     lattice.shift = vec::scaled(way.lattice, Vec3(0.37, 0.23, 0.11));
@@ -240,6 +243,7 @@ FillResult tetrahedra(const mesh::Surface& surface, const FillOptions& options, 
       throw MeshError(std::string("the surface could not be filled: ") + failure.what + ", at " +
                       place(failure.place));
     }
+    ++fillings;
     if (best.report.tetrahedra > 0 && !(report.min_dihedral > best.report.min_dihedral)) continue;
     best.mesh = detail::to_mesh(complex, surface);
     report.nodes = best.mesh.node_count();
