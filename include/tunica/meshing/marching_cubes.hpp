@@ -10,6 +10,7 @@
 #include "tunica/mesh/measures.hpp"
 #include "tunica/meshing/contour.hpp"
 #include "tunica/meshing/cut_numbers.hpp"
+#include "tunica/meshing/large_pages.hpp"
 #include "tunica/meshing/marching_caps.hpp"
 #include "tunica/meshing/marching_cells.hpp"
 #include "tunica/meshing/marching_triangles.hpp"
@@ -76,6 +77,10 @@ class MarchingSweep {
       for (const auto& face : caps_->triangles()) triangles += static_cast<Index>(face.size() / 3);
     }
     s.nodes.resize(3, nodes), s.cells.resize(3, triangles);
+    s.region.reserve(static_cast<std::size_t>(triangles));
+    large_pages(s.nodes.data(), sizeof(double) * static_cast<std::size_t>(s.nodes.size()));
+    large_pages(s.cells.data(), sizeof(Index) * static_cast<std::size_t>(s.cells.size()));
+    large_pages(s.region.data(), sizeof(Index) * s.region.capacity());
     s.region.assign(static_cast<std::size_t>(triangles), 0);
     s.region_names.emplace_back("wall");
     parallel_chunks(layers, slab, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -131,13 +136,17 @@ class MarchingSweep {
   /// The cuts of a row in +axis, one after the other.
   template <std::size_t axis>
   void place(std::size_t j, std::size_t k, double* x) const {
-    const std::array<std::size_t, 3> stride{1, nx_, nx_ * ny_};
+    const std::array<std::size_t, 3> stride{1, nx_, nx_ * ny_}, at{0, j, k};
     const T* v = image_.values.data() + nx_ * (j + ny_ * k);
     const double* along = image_.axes[0].data();
-    const double y = image_.axes[1][j], z = image_.axes[2][k];
-    [[maybe_unused]] const double high = axis == 1   ? image_.axes[1][j + 1]
-                                         : axis == 2 ? image_.axes[2][k + 1]
-                                                     : 0;
+    const std::array<double, 3> here{0, image_.axes[1][j], image_.axes[2][k]};
+    // of an edge in +y or +z: where it starts and how it goes on, from its outside node if that is the lower
+    // one
+    std::array<double, 2> from{}, step{};
+    if constexpr (axis != 0) {
+      from = {image_.axes[axis][at[axis] + 1], image_.axes[axis][at[axis]]};
+      step = {from[1] - from[0], from[0] - from[1]};
+    }
     const std::uint64_t* row = bits_.row(j, k);
     for (std::size_t w = 0; w < bits_.words(); ++w) {
       std::uint64_t cut = 0;
@@ -146,13 +155,14 @@ class MarchingSweep {
       if constexpr (axis == 2) cut = row[w] ^ bits_.row(j, k + 1)[w];
       for (; cut != 0; cut &= cut - 1, x += 3) {
         const auto n = static_cast<unsigned>(std::countr_zero(cut));
-        const std::size_t i = word_bits * w + n;
-        const bool inside = (row[w] >> n & 1U) != 0;
-        const auto p = static_cast<double>(v[i]), q = static_cast<double>(v[i + stride[axis]]);
-        x[0] = along[i], x[1] = y, x[2] = z;
-        const double lo = x[axis], hi = axis == 0 ? along[i + 1] : high;
-        const double t = cut_fraction(inside ? p : q, inside ? q : p, iso_);
-        x[axis] = (inside ? lo : hi) + t * (inside ? hi - lo : lo - hi);
+        const std::size_t i = word_bits * w + n, inside = row[w] >> n & 1U, outside = inside ^ 1U;
+        const double t = cut_fraction(static_cast<double>(v[i + outside * stride[axis]]),
+                                      static_cast<double>(v[i + inside * stride[axis]]), iso_);
+        x[0] = along[i], x[1] = here[1], x[2] = here[2];
+        if constexpr (axis == 0)
+          x[0] = along[i + outside] + t * (along[i + inside] - along[i + outside]);
+        else
+          x[axis] = from[inside] + t * step[inside];
       }
     }
   }
