@@ -7,6 +7,7 @@
 #include "tunica/core/text.hpp"
 #include "tunica/core/units.hpp"
 #include "tunica/io/crc32.hpp"
+#include "tunica/io/read_file.hpp"
 
 #include <algorithm>
 #include <cmath>
