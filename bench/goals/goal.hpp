@@ -26,6 +26,7 @@ struct Goal {
 
 // One function a module; each line costs at most some seconds.
 [[nodiscard]] std::vector<Goal> contour_goals();
+[[nodiscard]] std::vector<Goal> dual_goals();
 [[nodiscard]] std::vector<Goal> smoothing_goals();
 [[nodiscard]] std::vector<Goal> filling_goals();
 [[nodiscard]] std::vector<Goal> solid_goals();

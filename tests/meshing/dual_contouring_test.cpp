@@ -382,6 +382,15 @@ TEST_SUITE("convergence") {
         sum += d * d, largest = std::max(largest, d);
       }
       rms.push_back(std::sqrt(sum / quads.node_count()));
+      const auto swept = meshing::dual_contour_quads(im, {}, 0);  // half-way from the mean of the crossings
+      double swept_sum = 0;
+      for (Index v = 0; v < swept.node_count(); ++v) {
+        const Vec3 x = swept.nodes.col(v);  // the field is a distance but in the crotch
+        swept_sum += std::pow(test::contours::bifurcation(x), 2);
+      }
+      const double half_way = std::sqrt(swept_sum / swept.node_count()) * (n - 1);
+      MESSAGE("bifurcation ", n, " in one sweep: vertices rms ", half_way, " h");
+      if (n == 64) CHECK(half_way < 0.5 * rms.back());  // vessels of few samples have edges in their cells
       MESSAGE("bifurcation " << n << ": " << quads.cell_count() << " quadrilaterals, vertices rms "
                              << rms.back() << " h, max " << largest << " h");
     }

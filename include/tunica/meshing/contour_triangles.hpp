@@ -28,8 +28,9 @@ struct DualImageOptions {
   /// sharp edges that pass just outside are met, at the price of overlaps on rough data.
   double hold = 1e-3;
   /// Share of the step from the mean of the crossings to the least error where the surface is smooth. That
-  /// mean lies as far on one side of a curved surface as the least error on the other: a half meets the
-  /// surface to third order, 1 is [JU02]. Planes, edges and corners are the same for any.
+  /// mean lies as far on one side of a curved surface as the least error on the other: half-way the vertex
+  /// lies as near to the surface as the crossings do; 1 is [JU02]. Planes, edges and corners are the same for
+  /// any.
   double smooth_share = 0.5;
 };
 

@@ -54,7 +54,7 @@ struct RimPoint {
 
 /// Rims of smooth walls are met so far outside of a cell, as a share of it: where one passes beside the cell,
 /// its plane and its wall enter the cell at different places.
-inline constexpr double rim_reach = 0.5, rim_share = 0.98;
+inline constexpr double rim_reach = 1, rim_share = 0.98;
 
 [[nodiscard]] inline bool within(const Box& box, double reach, const Vec3& x) {
   for (int a = 0; a < 3; ++a) {
@@ -89,8 +89,7 @@ inline constexpr double rim_reach = 0.5, rim_share = 0.98;
   RimPoint rim{vec::plus(from, span.part(vec::minus(mean, from))), false};
   if (walls > 0 && planes < 3) rim = least_error_in(span, sums, from, options);
   Vec3 x = rim.place;
-  const bool leaves =
-      planes == 1 && cuts.size() == 1 && walls > 1 && rim.smooth && within(cell.box, rim_reach, x);
+  const bool leaves = planes == 1 && cuts.size() == 1 && rim.smooth && within(cell.box, rim_reach, x);
   // not all of the way: neighbours with the same crossings have the same rim
   if (!section.empty()) x = vec::between(section.held(x, sums, hold), x, leaves ? rim_share : 0);
   for (int a = 0; a < 3; ++a)
