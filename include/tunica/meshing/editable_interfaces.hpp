@@ -169,16 +169,26 @@ class EditableInterfaces : public InterfaceRings {
     if (const double fold = sharpest(made, gone); fold > sharp && fold > sharpest(gone, before) + 1e-12)
       return false;
     const auto position = [&](Index n) { return x(n); };
-    for (const Made& m : made)
-      if (grid_.any(triangle(m.nodes).box(),
-                    [&](Index t) { return !in(gone, t) && cross(m.nodes, nodes(t), position); }))
-        return false;
+    near_.clear();  // triangles about the edit
+    Box about;
+    for (const Made& m : made) about.extend(triangle(m.nodes).box());
+    (void)grid_.any(about, [&](Index t) {
+      if (!in(gone, t)) near_.emplace_back(t, triangle(nodes(t)).box());
+      return false;
+    });
+    for (const Made& m : made) {
+      const Box box = triangle(m.nodes).box();
+      for (const auto& [t, other] : near_)
+        if (box.overlaps(other) && cross(m.nodes, nodes(t), position)) return false;
+    }
     // Among themselves: those that share a node alone may cross where sheets meet.
     for (std::size_t i = 0; i < made.size(); ++i)
       for (std::size_t j = i + 1; j < made.size(); ++j)
         if (cross(made[i].nodes, made[j].nodes, position)) return false;
     return true;
   }
+
+  std::vector<std::pair<Index, Box>> near_;
 };
 
 }  // namespace tunica::meshing

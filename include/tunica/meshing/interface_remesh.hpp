@@ -18,6 +18,8 @@ namespace detail {
 
 inline constexpr double least_angle = 0.35;  // [rad] 20 degrees: no collapse makes thinner triangles
 
+inline constexpr double grid_cell = 0.7;  // of the grid that finds triangles nearby, over the edge
+
 struct InterfaceLength {
   double length;
   Index a, b;
@@ -44,13 +46,16 @@ template <class Wanted>
   return list;
 }
 
-inline void flip_thin(EditableInterfaces& s) {
+/// Flips as long as they make thin triangles less thin: edges of all triangles from `first` on, then of those
+/// that the round before has made.
+inline void flip_thin(EditableInterfaces& s, Index first = 0) {
   constexpr int rounds = 6;
   for (int round = 0; round < rounds; ++round) {
-    bool changed = false;
-    for (const auto& e : lengths(s, [](double) { return true; }))
-      if (s.used(e.a) && s.used(e.b)) changed = s.flip(e.a, e.b) || changed;
-    if (!changed) return;
+    const Index end = s.triangle_count();
+    for (Index t = first; t < end; ++t)
+      for (std::size_t k = 0; k < 3 && s.alive(t); ++k) (void)s.flip(s.nodes(t)[k], s.nodes(t)[(k + 1) % 3]);
+    if (s.triangle_count() == end) return;
+    first = end;
   }
 }
 
@@ -98,9 +103,10 @@ inline void collapse_thin(EditableInterfaces& s, double angle) {
   constexpr int passes = 4;
   EditableInterfaces work(std::move(s), edge);
   for (int pass = 0; pass < passes; ++pass) {
+    const Index first = pass == 0 ? 0 : work.triangle_count();
     detail::split_long(work, edge);
     const Index done = detail::collapse_short(work, 0.8 * edge);
-    detail::flip_thin(work);
+    detail::flip_thin(work, first);
     if (done == 0) break;
   }
   detail::collapse_thin(work, detail::least_angle);
