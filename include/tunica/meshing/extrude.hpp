@@ -76,7 +76,7 @@ inline void add_extruded_patches(mesh::HexMesh& mesh, const mesh::QuadSurface& s
 template <class Field>
 [[nodiscard]] double least_between(const mesh::QuadSurface& sheet, const Field& field) {
   const mesh::Surface triangles = split_quads(sheet);
-  const FootFinder finder(triangles);
+  const TriangleFinder finder(triangles);
   double least = 1;
   for (Index q = 0; q < sheet.cell_count(); ++q) {
     const auto end = [&](int k) {

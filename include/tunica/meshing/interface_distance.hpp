@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace tunica::meshing {
@@ -44,6 +45,21 @@ struct FarPlace {
 /// Of the tolerance: a face whose 5 x 5 points all lie nearer than that is not looked at more finely.
 inline constexpr double suspect = 0.5;
 
+/// Of the points (i / steps, j / steps) of a face the first that is farthest from the surface. A distance
+/// changes by no more than the way from point to point, so few of them are asked for it.
+template <FootSurface S>
+[[nodiscard]] FarPlace farthest_of(const QuadFace& face, int steps, const S& surface) {
+  FarPlace farthest{face.at(0, 0), 0}, last{farthest.place, std::numeric_limits<double>::infinity()};
+  for (int j = 0; j <= steps; ++j)
+    for (int i = 0; i <= steps; ++i) {
+      const Vec3 p = face.at(static_cast<double>(i) / steps, static_cast<double>(j) / steps);
+      if (last.distance + vec::distance(p, last.place) <= farthest.distance) continue;
+      last = {p, distance_above(surface, p, farthest.distance)};
+      if (last.distance > farthest.distance) farthest = last;
+    }
+  return farthest;
+}
+
 /// Bilinear points, 5 x 5 a quadrilateral, against the lumen; the points of its wall against the
 /// quadrilaterals, each cut into 4 x 4 smaller ones. `far` receives the places beyond the tolerance. finer:
 /// suspect faces are searched for their farthest point among (4 finer + 1)^2.
@@ -75,14 +91,7 @@ template <FootSurface S>
         if (away > d.quads_max) d.quads_max = away, d.quads_place = p;
       }
     if (finer > 1 && worst > suspect * tolerance) {
-      FarPlace farthest{face.at(0, 0), 0};
-      for (int j = 0; j <= parts * finer; ++j)
-        for (int i = 0; i <= parts * finer; ++i) {
-          const Vec3 p =
-              face.at(static_cast<double>(i) / (parts * finer), static_cast<double>(j) / (parts * finer));
-          const double away = finder.distance(p);
-          if (away > farthest.distance) farthest = {p, away};
-        }
+      const FarPlace farthest = farthest_of(face, parts * finer, finder);
       if (far != nullptr && farthest.distance > tolerance) far->push_back(farthest);
       if (farthest.distance > d.quads_max) d.quads_max = farthest.distance, d.quads_place = farthest.place;
     }
@@ -97,7 +106,7 @@ template <FootSurface S>
   if (node > 0) d.quads_rms = std::sqrt(d.quads_rms / node), d.quads_beyond /= node;
 
   const mesh::Surface triangles = split_quads(fine);
-  const FootFinder back(triangles);
+  const TriangleFinder back(triangles);
   for (const Vec3& x : wall) {
     const double away = back.distance(x);
     d.wall_rms += away * away;

@@ -39,7 +39,7 @@ struct QuadFoot {
 };
 
 /// sheet: of fans_of_quads.
-[[nodiscard]] inline QuadFoot quad_foot(const FootFinder& sheet, const Vec3& x) {
+[[nodiscard]] inline QuadFoot quad_foot(const TriangleFinder& sheet, const Vec3& x) {
   const FootWeights foot = sheet.nearest_weights(x);
   QuadFoot q{foot.triangle / 4, {}, foot.point};
   const auto k = static_cast<std::size_t>(foot.triangle % 4);

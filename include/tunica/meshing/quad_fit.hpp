@@ -102,7 +102,7 @@ class QuadFitter {
       normal_[at(n)] = vec::unit(sum);
     }
     const mesh::Surface fans = fans_of_quads(wall_.nodes, wall_.cells);
-    const FootFinder sheet(fans);
+    const TriangleFinder sheet(fans);
     double worst = 0;
     for (Sample& s : samples_) {
       if (s.known && std::abs(s.distance) < 0.5 * options_.tolerance) continue;

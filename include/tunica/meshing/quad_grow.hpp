@@ -40,7 +40,7 @@ struct MissedPlace {
 [[nodiscard]] inline MissedPlace most_missed(const WallQuads& wall, const std::vector<Vec3>& targets,
                                              const std::vector<Vec3>& given_up, double apart) {
   const mesh::Surface fans = fans_of_quads(wall.nodes, wall.cells);
-  const FootFinder sheet(fans);
+  const TriangleFinder sheet(fans);
   MissedPlace worst;
   for (const Vec3& x : targets) {
     const QuadFoot foot = quad_foot(sheet, x);

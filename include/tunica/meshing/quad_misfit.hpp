@@ -57,7 +57,7 @@ class QuadMisfit {
           break;
         }
     const mesh::Surface fans = fans_of_quads(wall.nodes, wall.cells);
-    const FootFinder sheet(fans);
+    const TriangleFinder sheet(fans);
     for (const Vec3& x : targets) {
       const Index q = quad_foot(sheet, x).quad;
       targets_.push_back({x, q, face(q).squared_distance(x)});
@@ -157,13 +157,6 @@ class QuadMisfit {
     const double e = distance / tolerance_ - 1;
     return e > 0 ? e * e : 0;
   }
-  /// The distance from the surface, or any within the tolerance, which are all the same.
-  [[nodiscard]] double beyond(const Vec3& x) const {
-    if constexpr (requires { surface_.distance(x, tolerance_); })
-      return surface_.distance(x, tolerance_);
-    else
-      return surface_.distance(x);
-  }
   [[nodiscard]] double misfit(const Target& t) const { return target_weight * excess(std::sqrt(t.square)); }
   [[nodiscard]] double misfit(Index q) const {
     double sum = 0;
@@ -180,7 +173,7 @@ class QuadMisfit {
       const double weight = (k == 0 || k == 3 ? 1 - u(i) : u(i)) * (k < 2 ? 1 - v(i) : v(i)),
                    known = away_[at(q)][i];
       if (known + weight * moved <= tolerance_) continue;
-      sum += excess(weight > 0 ? beyond(f.at(u(i), v(i))) : known);
+      sum += excess(weight > 0 ? distance_above(surface_, f.at(u(i), v(i)), tolerance_) : known);
     }
     return sum;
   }

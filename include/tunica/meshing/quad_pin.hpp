@@ -30,7 +30,7 @@ struct QuadPin {
     QuadFoot foot;
   };
   const mesh::Surface fans = fans_of_quads(wall.nodes, wall.cells);
-  const FootFinder sheet(fans);
+  const TriangleFinder sheet(fans);
   std::vector<Miss> misses;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const QuadFoot foot = quad_foot(sheet, targets[i]);

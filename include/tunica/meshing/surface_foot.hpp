@@ -37,28 +37,30 @@ concept FootSurface = requires(const S& s, const Vec3& x) {
   { s.distance(x) } -> std::convertible_to<double>;
 };
 
-/// The triangles of one region of a surface, ready to be asked.
-class FootFinder {
+/// The distance of x where it is above `enough`; where it is not, that or another one that is not either.
+template <FootSurface S>
+[[nodiscard]] double distance_above(const S& surface, const Vec3& x, double enough) {
+  if constexpr (requires { surface.distance(x, enough); })
+    return surface.distance(x, enough);
+  else
+    return surface.distance(x);
+}
+
+/// The triangles of one region of a surface, ready to be asked for what is nearest.
+class TriangleFinder {
  public:
-  explicit FootFinder(const mesh::Surface& surface, Index region = 0)
-      : surface_(surface), normals_(vertex_normals(surface, region)) {
+  explicit TriangleFinder(const mesh::Surface& surface, Index region = 0) {
     std::vector<Box> boxes;
     for (Index t = 0; t < surface.cell_count(); ++t) {
       if (surface.region_of(t) != region) continue;
       triangles_.push_back(t);
       shape_.push_back(mesh::triangle(surface, t));
-      area_.push_back(shape_.back().area_vector());
       boxes.push_back(shape_.back().box());
     }
     tree_ = search::Octree(boxes);
   }
 
   [[nodiscard]] bool empty() const { return triangles_.empty(); }
-
-  [[nodiscard]] Foot nearest(const Vec3& x, double bound = std::numeric_limits<double>::infinity()) const {
-    return foot(x, tree_.nearest(
-                       x, [&](Index i) { return squared(x, i); }, bound * bound));
-  }
 
   /// Where it is not above `enough` it may be that of another triangle within that distance.
   [[nodiscard]] double distance(const Vec3& x, double enough = 0) const {
@@ -71,14 +73,47 @@ class FootFinder {
   /// Of a surface that is not empty.
   [[nodiscard]] FootWeights nearest_weights(const Vec3& x) const {
     const auto found = tree_.nearest(x, [&](Index i) { return squared(x, i); });
-    const auto& t = triangle(found.item);
+    const auto& t = shape(found.item);
     const Vec3 weights = t.nearest(x);
-    return {triangles_[static_cast<std::size_t>(found.item)], weights, t.at(weights)};
+    return {triangle(found.item), weights, t.at(weights)};
+  }
+
+ protected:
+  /// Of an item of the tree: its number in the surface, its corners, the squared distance of a point.
+  [[nodiscard]] Index triangle(Index item) const { return triangles_[static_cast<std::size_t>(item)]; }
+  [[nodiscard]] const mesh::Triangle& shape(Index item) const {
+    return shape_[static_cast<std::size_t>(item)];
+  }
+  [[nodiscard]] double squared(const Vec3& x, Index item) const {
+    const auto& t = shape(item);
+    const Vec3 way = vec::minus(t.at(t.nearest(x)), x);
+    return vec::dot(way, way);
+  }
+  [[nodiscard]] const search::Octree& tree() const { return tree_; }
+
+ private:
+  std::vector<Index> triangles_;
+  std::vector<mesh::Triangle> shape_;
+  search::Octree tree_;
+};
+
+/// The same with the normals of the surface.
+class FootFinder : public TriangleFinder {
+ public:
+  explicit FootFinder(const mesh::Surface& surface, Index region = 0)
+      : TriangleFinder(surface, region), surface_(surface), normals_(vertex_normals(surface, region)) {
+    for (Index t = 0; t < surface.cell_count(); ++t)
+      if (surface.region_of(t) == region) area_.push_back(mesh::triangle(surface, t).area_vector());
+  }
+
+  [[nodiscard]] Foot nearest(const Vec3& x, double bound = std::numeric_limits<double>::infinity()) const {
+    return foot(x, tree().nearest(
+                       x, [&](Index i) { return squared(x, i); }, bound * bound));
   }
 
   /// The nearest among the triangles that face the same way as the normal: not the far side of a fold.
   [[nodiscard]] Foot nearest_facing(const Vec3& x, const Vec3& normal) const {
-    const auto found = tree_.nearest(x, [&](Index i) {
+    const auto found = tree().nearest(x, [&](Index i) {
       const bool facing = vec::dot(area_[static_cast<std::size_t>(i)], normal) > 0;
       return facing ? squared(x, i) : std::numeric_limits<double>::infinity();
     });
@@ -86,33 +121,20 @@ class FootFinder {
   }
 
  private:
-  [[nodiscard]] const mesh::Triangle& triangle(Index item) const {
-    return shape_[static_cast<std::size_t>(item)];
-  }
-  [[nodiscard]] double squared(const Vec3& x, Index item) const {
-    const auto& t = triangle(item);
-    const Vec3 way = vec::minus(t.at(t.nearest(x)), x);
-    return vec::dot(way, way);
-  }
   [[nodiscard]] Foot foot(const Vec3& x, const search::Nearest& found) const {
     if (found.item < 0) return {x, Vec3::Zero()};
-    const auto& t = triangle(found.item);
+    const auto& t = shape(found.item);
     const Vec3 weights = t.nearest(x);
     Vec3 n = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
       n = vec::along(n, weights[k],
-                     normals_[static_cast<std::size_t>(
-                         surface_.cells(k, triangles_[static_cast<std::size_t>(found.item)]))]);
+                     normals_[static_cast<std::size_t>(surface_.cells(k, triangle(found.item)))]);
     const Vec3 p = t.at(weights);
     return {p, vec::length(n) > 0 ? vec::unit(n) : vec::unit(t.area_vector()), vec::distance(p, x)};
   }
 
   const mesh::Surface& surface_;
-  std::vector<Vec3> normals_;
-  std::vector<Index> triangles_;  // of the surface, and what is asked of them again and again
-  std::vector<mesh::Triangle> shape_;
-  std::vector<Vec3> area_;
-  search::Octree tree_;
+  std::vector<Vec3> normals_, area_;  // of nodes; of the triangles of the region
 };
 
 }  // namespace tunica::meshing
