@@ -71,6 +71,7 @@ struct [[nodiscard]] FilledVessel {
   mesh::HexMesh hexes;
   mesh::Surface triangles;
   mesh::QuadSurface quads;
+  std::vector<Index> in_layers;  // 1 for tetrahedra of the layers, 0 for the others; empty without layers
 };
 
 namespace detail {
@@ -161,6 +162,8 @@ inline void fill_triangles(const FillChoice& how, const ImageVessel& vessel, Fil
     if (how.layers > 0) {
       auto filled = meshing::layered_tetrahedra(out.triangles, {.layers = how.layers});
       out.tets = std::move(filled.mesh), out.triangles = std::move(filled.outer);
+      out.in_layers.assign(static_cast<std::size_t>(out.tets.cell_count()), 0);
+      std::fill_n(out.in_layers.begin(), filled.report.layer.tetrahedra, 1);  // they come first
       detail::tell_layers(filled.report, out.tets, report);
     } else {
       auto filled = size ? meshing::tetrahedra(out.triangles, {}, *size) : meshing::tetrahedra(out.triangles);

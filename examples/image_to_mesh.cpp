@@ -34,8 +34,10 @@ int main(int argc, char** argv) {
     const auto vessel = fill_image(options, fill, stage, report);
     OutputFiles files;
     stage("write", [&] {
+      io::VtuData data;
+      if (!vessel.in_layers.empty()) data.cells.push_back({"layers", vessel.in_layers});
       if (vessel.tets.cell_count() > 0)
-        files.write(volume, [&](const auto& path) { io::write_vtu(path, vessel.tets); });
+        files.write(volume, [&](const auto& path) { io::write_vtu(path, vessel.tets, data); });
       if (vessel.hexes.cell_count() > 0)
         files.write(volume, [&](const auto& path) { io::write_vtu(path, vessel.hexes); });
       files.write(surface_file(volume), [&](const auto& path) {
