@@ -295,4 +295,53 @@ TEST_SUITE("unit") {
     CHECK(closed == cases);
     CHECK(crossing == 0);
   }
+
+  TEST_CASE("meshing: the faces of random voxels become closed manifolds") {
+    // squares between inside and outside: many edges of four facets, many nodes of several fans
+    Index edges = 0, nodes = 0, crossing = 0, parts = 0;
+    std::size_t drawn_apart = 0;
+    double least_volume = 1;
+    constexpr int seeds = 20, n = 10;
+    for (int seed = 0; seed < seeds; ++seed) {
+      const auto inside = [&](int i, int j, int k) {
+        return std::min({i, j, k}) >= 0 && std::max({i, j, k}) < n &&
+               test::node_noise(static_cast<std::uint64_t>(((seed * n + i) * n + j) * n + k)) > 0;
+      };
+      test::SurfaceBuilder b;
+      double volume = 0;
+      const auto square = [&](const Vec3& o, const Vec3& u, const Vec3& v) {  // turns about u x v
+        const Index p = b.node(o), q = b.node(o + u), r = b.node(o + u + v), w = b.node(o + v);
+        b.triangles.push_back({p, q, r}), b.triangles.push_back({p, r, w});
+      };
+      for (int i = -1; i < n; ++i)
+        for (int j = -1; j < n; ++j)
+          for (int k = -1; k < n; ++k) {
+            volume += inside(i, j, k);
+            const Vec3 o(i + 1, j + 1, k + 1), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+            const auto wall = [&](bool here, bool there, const Vec3& at, const Vec3& u, const Vec3& v) {
+              if (here && !there) square(at, u, v);
+              if (there && !here) square(at, v, u);
+            };
+            wall(inside(i, j, k), inside(i + 1, j, k), Vec3(o[0], o[1] - 1, o[2] - 1), y, z);
+            wall(inside(i, j, k), inside(i, j + 1, k), Vec3(o[0] - 1, o[1], o[2] - 1), z, x);
+            wall(inside(i, j, k), inside(i, j, k + 1), Vec3(o[0] - 1, o[1] - 1, o[2]), x, y);
+          }
+      const auto fixed = meshing::repair(b.surface());
+      const auto t = mesh::topology(fixed.surface);
+      CAPTURE(seed);
+      CHECK(t.closed());
+      CHECK(fixed.report.filled.empty());
+      CHECK(mesh::enclosed_volume(fixed.surface) == doctest::Approx(volume).epsilon(0.2));
+      edges += fixed.report.split_edges.count, nodes += fixed.report.split_nodes.count;
+      crossing += fixed.report.crossings_after > 0;
+      drawn_apart += fixed.report.crossings_before;
+      least_volume = std::min(least_volume, mesh::enclosed_volume(fixed.surface) / volume);
+      parts += static_cast<Index>(t.components.size());
+    }
+    MESSAGE(seeds, " sets of voxels: ", edges, " edges and ", nodes, " nodes parted, ", parts, " parts, ",
+            crossing, " with crossings left of ", drawn_apart, " pairs; ", least_volume,
+            " of the volume or more");
+    CHECK(edges > 0);
+    CHECK(crossing == 0);
+  }
 }

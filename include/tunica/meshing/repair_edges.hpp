@@ -2,6 +2,7 @@
 // The edges of a surface that may be broken: all half-edges of each edge, however many and however turned.
 #pragma once
 
+#include "tunica/core/vec.hpp"
 #include "tunica/mesh/adjacency.hpp"
 
 #include <algorithm>
@@ -105,6 +106,14 @@ inline void drop_unused_nodes(mesh::Surface& s) {
   s.nodes.conservativeResize(3, count);
   for (Index t = 0; t < s.cell_count(); ++t)
     for (int k = 0; k < 3; ++k) s.cells(k, t) = number[static_cast<std::size_t>(s.cells(k, t))];
+}
+
+/// Adds nodes after those that there are.
+inline void append_nodes(mesh::Surface& s, const std::vector<Vec3>& extra) {
+  const Index n = s.node_count();
+  s.nodes.conservativeResize(3, n + static_cast<Index>(extra.size()));
+  for (std::size_t i = 0; i < extra.size(); ++i)
+    vec::set_column(s.nodes, n + static_cast<Index>(i), extra[i]);
 }
 
 /// Adds facets, each with the region of the one that it is given with.

@@ -62,14 +62,19 @@ inline void weld_equal(mesh::Surface& s, RepairReport& report) {
 /// A facet whose corners lie on one line goes; the facet beyond its longest side is split at its third
 /// corner, so that no gap is left. Returns how many went.
 inline Index drop_flat(mesh::Surface& s, RepairReport& report) {
-  const SharedEdges edges(s.cells);
   const Index cells = s.cell_count();
+  std::vector<char> flat(static_cast<std::size_t>(cells), 0);
+  bool any = false;
+  for (Index t = 0; t < cells; ++t)
+    if (projection_axis(mesh::triangle(s, t)) < 0) flat[static_cast<std::size_t>(t)] = 1, any = true;
+  if (!any) return 0;
+  const SharedEdges edges(s.cells);
   std::vector<char> kept(static_cast<std::size_t>(cells), 1), touched(kept.size(), 0);
   std::vector<std::array<Index, 3>> made;
   std::vector<Index> like;
   Index gone = 0;
   for (Index t = 0; t < cells; ++t) {
-    if (touched[static_cast<std::size_t>(t)] != 0 || projection_axis(mesh::triangle(s, t)) >= 0) continue;
+    if (touched[static_cast<std::size_t>(t)] != 0 || flat[static_cast<std::size_t>(t)] == 0) continue;
     const Index side = longest_side(s, t);
     const Index c = s.cells(mesh::previous_in_triangle(side) % 3, t);
     const auto row = edges.half_edges[edges.edge(side)];
@@ -77,7 +82,7 @@ inline Index drop_flat(mesh::Surface& s, RepairReport& report) {
     for (const Index h : row) {
       const Index d = s.cells(mesh::previous_in_triangle(h) % 3, h / 3);
       free = free && touched[static_cast<std::size_t>(h / 3)] == 0 &&
-             (h == side || (d != c && !edges.has(c, d) && projection_axis(mesh::triangle(s, h / 3)) >= 0));
+             (h == side || (d != c && !edges.has(c, d) && flat[static_cast<std::size_t>(h / 3)] == 0));
     }
     if (!free) continue;
     report.degenerate.add(mesh::node(s, c)), ++gone;
@@ -112,6 +117,9 @@ inline void drop_duplicates(mesh::Surface& s, RepairReport& report) {
   std::sort(list.begin(), list.end(), [](const Key& a, const Key& b) {
     return std::tie(a.nodes, a.facet) < std::tie(b.nodes, b.facet);
   });
+  bool any = false;
+  for (std::size_t i = 1; i < list.size(); ++i) any = any || list[i].nodes == list[i - 1].nodes;
+  if (!any) return;
   const SharedEdges edges(s.cells);
   const auto even = [&](Index t) {  // it turns as its nodes in ascending order
     const Index a = s.cells(0, t), b = s.cells(1, t), c = s.cells(2, t);

@@ -173,10 +173,7 @@ inline void fill_holes(mesh::Surface& s, Index most_edges, RepairReport& report)
     hole.triangles = static_cast<Index>(patch.triangles.size());
     report.filled.push_back(hole);
   }
-  const Index old_nodes = s.node_count();
-  s.nodes.conservativeResize(3, old_nodes + static_cast<Index>(extra.size()));
-  for (std::size_t i = 0; i < extra.size(); ++i)
-    vec::set_column(s.nodes, old_nodes + static_cast<Index>(i), extra[i]);
+  append_nodes(s, extra);
   // a filling is of the region of the facet at its first edge
   std::vector<Index> like;
   for (const auto& t : made) {

@@ -9,6 +9,7 @@
 #include "tunica/meshing/repair_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -40,6 +41,60 @@ namespace tunica::meshing::detail {
     twin[static_cast<std::size_t>(g)] = h, twin[static_cast<std::size_t>(h)] = g;
   }
   return true;
+}
+
+inline constexpr double drawn_in = 0.05;  // of the way to the neighbours within the same sheet
+
+/// Edges whose ends both stay one node although they have several pairs of facets: each pair is split at a
+/// node of its own.
+inline void split_pairs(mesh::Surface& s, const std::vector<Index>& twin) {
+  const SharedEdges edges(s.cells);
+  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
+  std::vector<Index> middle(twin.size(), -1);
+  std::vector<Vec3> extra;
+  for (Index e = 0; e < edges.size(); ++e) {
+    if (edges.facets(e) < 4) continue;
+    for (const Index h : edges.half_edges[e]) {
+      const Index g = twin[at(h)];
+      if (g < h) continue;  // done, or without a pair
+      const auto [a, b] = mesh::half_edge(s.cells, h);
+      const auto apex = [&](Index i) {
+        return mesh::node(s, s.cells(mesh::previous_in_triangle(i) % 3, i / 3));
+      };
+      middle[at(h)] = middle[at(g)] = s.node_count() + static_cast<Index>(extra.size());
+      extra.push_back(vec::between(vec::between(mesh::node(s, a), mesh::node(s, b), 0.5),
+                                   vec::between(apex(h), apex(g), 0.5), drawn_in));
+    }
+  }
+  if (extra.empty()) return;
+  append_nodes(s, extra);
+  std::vector<char> kept(at(s.cell_count()), 1);
+  std::vector<std::array<Index, 3>> made;
+  std::vector<Index> like;
+  for (Index t = 0; t < s.cell_count(); ++t) {
+    std::vector<Index> ring;  // corners and middles
+    Index first = -1;         // a middle
+    for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+      ring.push_back(s.cells(h % 3, t));
+      if (middle[at(h)] < 0) continue;
+      if (first < 0) first = static_cast<Index>(ring.size());
+      ring.push_back(middle[at(h)]);
+    }
+    if (first < 0) continue;
+    kept[at(t)] = 0;
+    std::rotate(ring.begin(), ring.begin() + first, ring.end());
+    if (ring.size() == 6) {  // middles at 0, 2, 4
+      made.push_back({ring[0], ring[2], ring[4]}), like.push_back(t);
+      for (std::size_t k = 0; k < 6; k += 2)
+        made.push_back({ring[k], ring[k + 1], ring[(k + 2) % 6]}), like.push_back(t);
+    } else {  // a fan from the first middle
+      for (std::size_t k = 1; k + 1 < ring.size(); ++k)
+        made.push_back({ring[0], ring[k], ring[k + 1]}), like.push_back(t);
+    }
+  }
+  add_facets(s, made, like);
+  kept.resize(at(s.cell_count()), 1);
+  keep_facets(s, kept);
 }
 
 /// Parts what touches. Facets must agree and face outward.
@@ -84,13 +139,10 @@ inline void part_sheets(mesh::Surface& s, RepairReport& report) {
     copy[at(h)] = s.node_count() + static_cast<Index>(extra.size());
     extra.push_back(mesh::node(s, n));
   }
-  if (extra.empty()) return;
+  if (extra.empty() && report.split_edges.count == 0) return;
   const Index old_count = s.node_count();
-  s.nodes.conservativeResize(3, old_count + static_cast<Index>(extra.size()));
-  for (std::size_t i = 0; i < extra.size(); ++i)
-    vec::set_column(s.nodes, old_count + static_cast<Index>(i), extra[i]);
+  append_nodes(s, extra);
   // each of them is drawn towards the nodes of its own fan
-  constexpr double share = 0.05;  // of the way
   std::vector<Vec3> sum(at(s.node_count()), Vec3(0, 0, 0));
   std::vector<int> count(sum.size(), 0);
   const Connectivity<3> old_cells = s.cells;
@@ -105,8 +157,9 @@ inline void part_sheets(mesh::Surface& s, RepairReport& report) {
   for (Index n = 0; n < s.node_count(); ++n)
     if (count[at(n)] > 0) {
       const Vec3 mean = vec::divided(sum[at(n)], count[at(n)]);
-      vec::set_column(s.nodes, n, vec::between(mesh::node(s, n), mean, share));
+      vec::set_column(s.nodes, n, vec::between(mesh::node(s, n), mean, drawn_in));
     }
+  split_pairs(s, twin);
 }
 
 }  // namespace tunica::meshing::detail
