@@ -6,6 +6,8 @@
 #include "tunica/mesh/topology.hpp"
 #include "tunica/meshing/multi_region.hpp"
 
+#include <Eigen/Geometry>
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
