@@ -5,6 +5,7 @@
 #include "material_figures.hpp"
 #include "output_files.hpp"
 #include "stages.hpp"
+#include "tunica/image/phantom_labels.hpp"
 #include "tunica/io/vtk_image.hpp"
 #include "tunica/io/vtu.hpp"
 #include "tunica/meshing/multi_region.hpp"
@@ -22,7 +23,10 @@ int main(int argc, char** argv) {
   meshing::MultiRegionOptions options;
   Cli cli("labels_to_mesh",
           "Fills the labels of an image with tetrahedra, in the unit of the image; 0 is outside.");
-  cli.argument("LABELS.vtk", "VTK legacy image whose values are whole numbers", in);
+  cli.argument(
+      "LABELS.vtk",
+      "VTK legacy image whose values are whole numbers, or the word phantom: a vessel that needs no file",
+      in);
   cli.repeated(
       "--name", "N=TEXT", "what label N is called, 1=lumen (material N)", [&](const std::string& text) {
         const auto equal = text.find('=');
@@ -50,7 +54,10 @@ int main(int argc, char** argv) {
     Stages stage(3);
     Json report;
     report["warnings"] = Json(std::vector<std::string>{});
-    const auto labels = stage("read", [&] { return image::as_labels(io::read_vtk_image<double>(in).image); });
+    const auto labels = stage("read", [&] {
+      return in == "phantom" ? image::PhantomLabels{}()
+                             : image::as_labels(io::read_vtk_image<double>(in).image);
+    });
     const auto meshed = stage("mesh", [&] { return meshing::multi_region(labels, options); });
     report["fill"] = material_figures(meshed);
     OutputFiles files;

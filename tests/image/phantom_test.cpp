@@ -2,11 +2,13 @@
 #include "tunica/image/phantom.hpp"
 
 #include "tunica/image/components.hpp"
+#include "tunica/image/phantom_labels.hpp"
 #include "tunica/image/phantom_truth.hpp"
 #include "tunica/image/sampling.hpp"
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 
 using namespace tunica;
@@ -132,5 +134,24 @@ TEST_SUITE("unit") {
     };
     const auto line = sample<double>(Line{}, s);
     CHECK(std::abs(line({20, 20, 20}) - line.position({20, 20, 20})[1]) < 1e-12);  // a line is kept
+  }
+
+  TEST_CASE("image: labels of the phantom have its volumes and a wall of the thickness") {
+    const PhantomLabels coarse{.spacing = 1, .thickness = 2};
+    const auto labels = coarse();
+    std::array<double, 4> volume{};
+    for (const auto v : labels.values) volume.at(static_cast<std::size_t>(v)) += 1;  // [mm3]
+    // lumen and thrombus together are the phantom's inside
+    double inside = 0;
+    const Phantom phantom;
+    for (const double z : labels.axes[2])
+      for (const double y : labels.axes[1])
+        for (const double x : labels.axes[0]) inside += phantom.level({x, y, z}).value <= 0;
+    CHECK(volume[1] + volume[2] == inside);
+    CHECK(volume[2] > 0.05 * inside);
+    CHECK(volume[3] > 0.3 * inside);
+    const Vec3 on = phantom.axis(0, 100).centre;
+    CHECK(coarse.label(on) == PhantomLabel::lumen);
+    CHECK(coarse.label(Vec3(200, 95, 5)) == PhantomLabel::outside);
   }
 }

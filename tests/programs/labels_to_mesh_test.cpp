@@ -37,6 +37,18 @@ TEST_SUITE("job") {
     CHECK(faults(*checker, folder, "a.vtu") == "");
   }
 
+  TEST_CASE("labels_to_mesh: the phantom needs no file") {
+    const auto checker = shared("tools/check_mesh.py");
+    if (!checker || program("labels_to_mesh").empty()) return;
+    const Folder folder;
+    const auto o =
+        run(folder, program("labels_to_mesh") +
+                        " phantom --name 1=lumen --name 2=thrombus --name 3=wall --edge 2 -o a.vtu");
+    INFO(o.err);
+    REQUIRE(o.status == 0);
+    CHECK(faults(*checker, folder, "a.vtu") == "");
+  }
+
   TEST_CASE("labels_to_mesh: wrong uses and images without labels end with their sentence") {
     if (program("labels_to_mesh").empty()) return;
     const Folder folder;
