@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Observed orders of marching cubes: vertices, volume and area on a sphere and on a bifurcation.
+// Observed orders of marching cubes: vertices, volume, area and normals on a sphere, a bifurcation and the
+// phantom.
 #include "tunica/meshing/marching_cubes.hpp"
 
 #include "support/work_cases.hpp"
+#include "tunica/image/phantom_truth.hpp"
+#include "tunica/image/sampling.hpp"
 #include "tunica/mesh/measures.hpp"
+#include "tunica/meshing/cut.hpp"
 
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 using namespace tunica;
 
@@ -51,5 +56,51 @@ TEST_SUITE("convergence") {
       CHECK(r / h < 1.01 * (n == 0 ? 7.14e-3 : 3.61e-3));  // what the same linear cut gives elsewhere
     }
     CHECK(rms[0] / rms[1] > 3.7);
+  }
+
+  TEST_CASE(
+      "meshing: marching cubes of the phantom has vertices and volume of second order and normals of first") {
+    const image::Phantom phantom;
+    const double truth = image::lumen_volume(phantom);
+    std::vector<meshing::Cut> ends;
+    for (const auto& port : image::Phantom::ports())
+      ends.push_back({.point = port.point, .normal = port.normal, .name = port.name});
+    std::array<double, 3> vertex{}, normal{}, volume{};
+    for (std::size_t level = 0; level < 3; ++level) {
+      const auto scan = image::sample(phantom, image::Sampling{}.refined(1 << level));
+      const auto surface = meshing::marching_cubes(scan, image::Phantom::surface).surface;
+      // between the ports: the border of the image has caps
+      const auto within = [](const Vec3& x) {
+        return x[1] > image::Phantom::outlet_y && x[1] < image::Phantom::inlet_y;
+      };
+      double squares = 0, turns = 0, area = 0;
+      Index count = 0;
+      const Index every = 1 << (2 * level);  // about as many at each level
+      for (Index n = 0; n < surface.node_count(); n += every) {
+        const Vec3 x = surface.nodes.col(n);
+        if (!within(x)) continue;
+        const double d = image::nearest_on_surface(phantom, x).distance;
+        squares += d * d, ++count;
+      }
+      for (Index t = 0; t < surface.cell_count(); t += every) {
+        const auto triangle = mesh::triangle(surface, t);
+        const Vec3 x = triangle.centroid(), n = triangle.area_vector();
+        if (!within(x)) continue;
+        const Vec3 exact = phantom.level(image::nearest_on_surface(phantom, x).point).gradient.normalized();
+        const double angle = std::atan2(n.cross(exact).norm(), n.dot(exact));
+        turns += triangle.area() * angle * angle, area += triangle.area();
+      }
+      vertex[level] = std::sqrt(squares / count);
+      normal[level] = std::sqrt(turns / area) * 180 / std::numbers::pi;
+      volume[level] = std::abs(mesh::enclosed_volume(meshing::cut(surface, ends).surface) / truth - 1);
+      MESSAGE("phantom, refined ", 1 << level, " times: vertices ", vertex[level], " mm, normals ",
+              normal[level], " degrees (rms), volume ", volume[level]);
+    }
+    for (std::size_t n = 1; n < 3; ++n)
+      MESSAGE("orders: vertices ", std::log2(vertex[n - 1] / vertex[n]), " normals ",
+              std::log2(normal[n - 1] / normal[n]), " volume ", std::log2(volume[n - 1] / volume[n]));
+    CHECK(std::log2(vertex[1] / vertex[2]) > 1.9);
+    CHECK(std::log2(normal[1] / normal[2]) > 0.9);
+    CHECK(std::log2(volume[1] / volume[2]) > 1.9);
   }
 }

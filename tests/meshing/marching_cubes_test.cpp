@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <string>
 
 using namespace tunica;
 
@@ -40,6 +41,35 @@ image::Image<short> block(Index nx, Index ny, Index nz, short value) {
     for (Index i = 0; i < n[a]; ++i) im.axes[a].push_back(i);
   im.values.assign(static_cast<std::size_t>(nx * ny * nz), value);
   return im;
+}
+
+/// Euler number of the solid whose surface is looked for, from the values alone: inside nodes, edges between
+/// two of them, faces of four and cells of eight are its cells. Where only two opposite corners of a cell are
+/// outside, each is cut off for itself and the hexagon of the others is filled.
+template <class T>
+Index euler_of_inside(const image::Image<T>& im, double iso) {
+  const Index nx = im.size(0), ny = im.size(1), nz = im.size(2);
+  Index sum = 0;
+  for (Index k = 0; k < nz; ++k)
+    for (Index j = 0; j < ny; ++j)
+      for (Index i = 0; i < nx; ++i) {
+        const std::array<bool, 3> end{i + 1 == nx, j + 1 == ny, k + 1 == nz};
+        std::array<bool, 8> in{};
+        for (Index c = 0; c < 8; ++c) {
+          const Index x = c & 1, y = c >> 1 & 1, z = c >> 2;
+          if ((x == 0 || !end[0]) && (y == 0 || !end[1]) && (z == 0 || !end[2]))
+            in[static_cast<std::size_t>(c)] = static_cast<double>(im({i + x, j + y, k + z})) >= iso;
+        }
+        sum += in[0];
+        sum -= (in[0] && in[1]) + (in[0] && in[2]) + (in[0] && in[4]);
+        sum += (in[0] && in[1] && in[2] && in[3]) + (in[0] && in[1] && in[4] && in[5]) +
+               (in[0] && in[2] && in[4] && in[6]);
+        if (end[0] || end[1] || end[2]) continue;
+        const auto count = std::count(in.begin(), in.end(), true);
+        sum -= count == 8;
+        for (std::size_t c = 0; c < 4; ++c) sum += count == 6 && !in[c] && !in[7 - c];
+      }
+  return sum;
 }
 
 }  // namespace
@@ -88,6 +118,23 @@ TEST_SUITE("unit") {
     CHECK(noise.surface.cell_count() > 700000);
   }
 
+  TEST_CASE("meshing: Euler number of noise by marching cubes is that of an independent count") {
+    for (std::uint64_t seed = 0; seed < 4; ++seed)
+      for (const bool integer : {false, true}) {
+        const auto im = integer ? test::integer_noise_volume(64, seed) : test::noise_volume(64, seed);
+        const auto s = meshing::marching_cubes(im, 0).surface;
+        // closed: three edges for two triangles
+        const Index euler = s.node_count() - s.cell_count() / 2, solid = euler_of_inside(im, 0);
+        MESSAGE(std::string(integer ? "noisei" : "noise"), " 64, seed ", seed, ": Euler number ", euler);
+        CHECK(s.cell_count() % 2 == 0);
+        CHECK(euler == 2 * solid);
+        CHECK(std::abs(euler) > 10000);
+      }
+    const auto sphere =
+        meshing::marching_cubes(test::sampled<float>(20, [](const Vec3& x) { return -test::sphere(x); }), 0);
+    CHECK(mesh::topology(sphere.surface).euler() == 2);
+  }
+
   TEST_CASE("meshing: marching cubes caps noise at every face of the image") {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
       image::Image<int> im;
@@ -101,6 +148,7 @@ TEST_SUITE("unit") {
       for (int& v : im.values) v = static_cast<int>(test::splitmix64(++at) % 5) - 2;
       const auto c = meshing::marching_cubes(im, 0);
       check_surface(c.surface);
+      CHECK(mesh::topology(c.surface).euler() == 2 * euler_of_inside(im, 0));
       CHECK(c.borders.size() == 6);
       const Box box = mesh::bounding_box(c.surface.nodes);
       for (const auto& b : c.borders) {

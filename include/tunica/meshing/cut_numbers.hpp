@@ -65,12 +65,14 @@ class CutNumbers {
   [[nodiscard]] Index number(std::size_t axis, std::size_t i, std::size_t j, std::size_t k) const {
     const Starts s = starts(j, k);
     Index n = axis == 0 ? s.x : axis == 1 ? s.y : s.z;
-    for (std::size_t w = 0; w <= i / detail::word_bits; ++w) {
-      const CutWords cuts = words(w, j, k);
-      std::uint64_t word = axis == 0 ? cuts.x : axis == 1 ? cuts.y : cuts.z;
-      if (w == i / detail::word_bits) word &= (std::uint64_t{1} << i % detail::word_bits) - 1;
-      if (word != 0) n += detail::bits_set(word);
-    }
+    const std::uint64_t* row = bits_.row(j, k);
+    const std::uint64_t* other = axis == 1 ? bits_.row(j + 1, k) : axis == 2 ? bits_.row(j, k + 1) : nullptr;
+    const auto cuts = [&](std::size_t w) {
+      return row[w] ^ (axis == 0 ? bits_.next(row, w) : other[w]);  // i has a neighbour: so has all before
+    };
+    const std::size_t last = i / detail::word_bits;
+    for (std::size_t w = 0; w < last; ++w) n += detail::bits_set(cuts(w));
+    n += detail::bits_set(cuts(last) & detail::first_bits(i % detail::word_bits));
     return n;
   }
 

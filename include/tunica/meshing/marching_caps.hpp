@@ -5,10 +5,9 @@
 #include "tunica/meshing/cut_numbers.hpp"
 #include "tunica/meshing/sign_bits.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <utility>
+#include <cstdint>
 #include <vector>
 
 namespace tunica::meshing::detail {
@@ -22,11 +21,12 @@ class MarchingCaps {
   MarchingCaps(const SignBits& bits, const CutNumbers& cuts, const Node& size)
       : bits_(bits), cuts_(cuts), size_(size) {
     const auto [nx, ny, nz] = size;
+    first_.reserve(ny * nz);
     for (std::size_t k = 0; k < nz; ++k)
       for (std::size_t j = 0; j < ny; ++j) {
-        const bool inner = k > 0 && k + 1 < nz && j > 0 && j + 1 < ny;
+        first_.push_back(static_cast<Index>(nodes_.size()));
         if (!bits.any(j, k)) continue;
-        for (std::size_t i = 0; i < nx; i += inner ? nx - 1 : 1)
+        for (std::size_t i = 0; i < nx; i += whole(j, k) ? 1 : nx - 1)
           if (bits.inside(i, j, k)) nodes_.push_back({i, j, k});
       }
     if (nodes_.empty()) return;
@@ -57,12 +57,18 @@ class MarchingCaps {
  private:
   [[nodiscard]] bool inside(const Node& n) const { return bits_.inside(n[0], n[1], n[2]); }
 
+  /// All of the row is border, or its ends only.
+  [[nodiscard]] bool whole(std::size_t j, std::size_t k) const {
+    return k == 0 || k + 1 == size_[2] || j == 0 || j + 1 == size_[1];
+  }
+
   [[nodiscard]] Index number(const Node& node) const {
-    const auto before = [](const Node& p, const Node& q) {
-      return p[2] != q[2] ? p[2] < q[2] : p[1] != q[1] ? p[1] < q[1] : p[0] < q[0];
-    };
-    const auto place = std::lower_bound(nodes_.begin(), nodes_.end(), node, before) - nodes_.begin();
-    return cuts_.count() + static_cast<Index>(place);
+    const auto [i, j, k] = node;
+    Index n = cuts_.count() + first_[j + size_[1] * k];
+    if (!whole(j, k)) return n + (i > 0 && bits_.inside(0, j, k) ? 1 : 0);
+    const std::uint64_t* row = bits_.row(j, k);
+    for (std::size_t w = 0; w < i / word_bits; ++w) n += bits_set(row[w]);
+    return n + bits_set(row[i / word_bits] & first_bits(i % word_bits));
   }
 
   [[nodiscard]] Index cut_between(const Node& p, const Node& q) const {
@@ -101,7 +107,8 @@ class MarchingCaps {
   const SignBits& bits_;
   const CutNumbers& cuts_;
   Node size_;
-  std::vector<Node> nodes_;  // ascending
+  std::vector<Node> nodes_;   // row by row
+  std::vector<Index> first_;  // of a row
   std::array<std::vector<Index>, 6> triangles_;
 };
 
