@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
+
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -239,14 +241,29 @@ TEST_SUITE("unit") {
       std::vector<Vec3> turned_over;
       for (Index n = 0; n < level.node_count(); ++n)
         turned_over.push_back({level.nodes((k + 1) % 3, n), level.nodes((k + 2) % 3, n), level.nodes(k, n)});
-      const Vec3 stretch = meshing::detail::stretch_of(round, turned_over);
-      CHECK(stretch.allFinite());
-      CHECK(stretch[(4 - k) % 3] == 1);  // across the plane
+      const auto stretch = meshing::detail::along_axes(round, turned_over);
+      const auto i = static_cast<std::size_t>((4 - k) % 3);
+      CHECK(stretch.to[i] == Vec3(Vec3::Unit((4 - k) % 3)));  // across the plane
+      CHECK(meshing::detail::in_all_directions(round, turned_over).even);
     }
     std::vector<Vec3> thin;
     for (Index n = 0; n < good.node_count(); ++n)
       thin.push_back({good.nodes(0, n), good.nodes(1, n) / 8, good.nodes(2, n) / 1024});
-    CHECK(meshing::detail::stretch_of(round, thin) == Vec3(1, 8, 1024));
+    const auto stretch = meshing::detail::along_axes(round, thin);
+    for (int k = 0; k < 3; ++k)
+      CHECK(stretch.to[static_cast<std::size_t>(k)][k] ==
+            std::array{1.0, 8.0, 1024.0}[static_cast<std::size_t>(k)]);
+    // However it lies: there and back again, and a turned thin sphere has edges of one length after it.
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    for (Vec3& x : thin) x = turn * x;
+    const auto all = meshing::detail::in_all_directions(round, thin);
+    CHECK_FALSE(all.even);
+    const auto there = meshing::detail::mapped(thin, all.to), back = meshing::detail::mapped(there, all.back);
+    for (std::size_t n = 0; n < thin.size(); ++n) CHECK((back[n] - thin[n]).norm() < 1e-12);
+    const auto again = meshing::detail::in_all_directions(round, there);
+    CHECK(again.even);
+    for (std::size_t k = 0; k < 3; ++k)
+      CHECK(again.to[k][static_cast<int>(k)] == doctest::Approx(1).epsilon(1e-6));
     auto nan = good;
     nan.nodes(1, 3) = std::nan("");
     CHECK(contains(refusal(nan), "not finite"));

@@ -4,12 +4,14 @@
 
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
+#include "tunica/mesh/topology.hpp"
 #include "tunica/meshing/predicates.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,40 @@ inline std::vector<TurnedFace> turned_border(const mesh::TetMesh& m) {
   for (const TurnedFace& f : all)
     if (!std::binary_search(all.begin(), all.end(), turned({f[0], f[2], f[1]}))) open.push_back(f);
   return open;
+}
+
+/// Does every component enclose the inside of a body or, within one, of a cavity? Its volume is positive
+/// where an even number of others encloses it, negative where an odd one does.
+inline bool nested_outward(const mesh::Surface& s) {
+  const auto t = mesh::topology(s);
+  Index count = 0;
+  for (const Index c : t.component_of) count = std::max(count, c + 1);
+  const auto corner = [&](Index i, Index f) { return vec::column(s.nodes, s.cells(i, f)); };
+  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
+  std::vector<long double> volume(at(count), 0);
+  std::vector<Vec3> start(at(count));
+  for (Index f = s.cell_count() - 1; f >= 0; --f) start[at(t.component_of[at(f)])] = corner(0, f);
+  for (Index f = 0; f < s.cell_count(); ++f) {
+    const Index c = t.component_of[at(f)];
+    const Vec3 a = corner(0, f) - start[at(c)], b = corner(1, f) - start[at(c)],
+               d = corner(2, f) - start[at(c)];
+    volume[at(c)] += vec::dot(vec::cross(a, b), d);
+  }
+  for (Index c = 0; c < count; ++c) {
+    double solid_angles = 0;  // [OOSTEROM83] of the other components as seen from this one
+    for (Index f = 0; f < s.cell_count(); ++f) {
+      if (t.component_of[at(f)] == c) continue;
+      const Vec3 x = corner(0, f) - start[at(c)], y = corner(1, f) - start[at(c)],
+                 z = corner(2, f) - start[at(c)];
+      const double p = vec::length(x), q = vec::length(y), r = vec::length(z);
+      solid_angles +=
+          2 * std::atan2(vec::dot(vec::cross(x, y), z),
+                         p * q * r + vec::dot(x, y) * r + vec::dot(y, z) * p + vec::dot(z, x) * q);
+    }
+    const bool inside = std::abs(solid_angles) > 2 * std::numbers::pi;
+    if (inside ? !(volume[at(c)] < 0) : !(volume[at(c)] > 0)) return false;
+  }
+  return true;
 }
 
 /// The first promise that a filling breaks, empty: none. Signs are exact; the volume is summed in long

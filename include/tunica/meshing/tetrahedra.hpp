@@ -205,43 +205,40 @@ FillResult tetrahedra(const mesh::Surface& surface, const FillOptions& options, 
   const double poor = bound > flat ? std::min(flat, 0.5 * bound) : 0;
   const double target = std::sin(options.target_angle * std::numbers::pi / 180);
   FillResult best;
-  const Vec3 stretch = detail::stretch_of(front, nodes);
-  const bool even = stretch[0] == 1 && stretch[1] == 1 && stretch[2] == 1;
-  const auto scaled = [](std::vector<Vec3> points, const Vec3& by) {
-    for (Vec3& x : points)
-      for (int k = 0; k < 3; ++k) x[k] *= by[k];
-    return points;
-  };
+  const detail::Stretch axes = detail::along_axes(front, nodes);
+  const detail::Stretch all_directions = detail::in_all_directions(front, nodes);
+  std::string first_failure;
   for (const detail::FillWay& way : detail::fill_ways) {
-    const bool last = &way == &detail::fill_ways.back();
-    const bool enough = best.report.min_dihedral >= poor || last || fillings == most_fillings;
-    if (best.report.tetrahedra > 0 && enough) break;
-    if (way.stretched && even) continue;
+    const bool some = best.report.tetrahedra > 0;
+    if (some && (best.report.min_dihedral >= poor || fillings == most_fillings)) break;
+    const detail::Stretch stretch = way.space == detail::axes             ? axes
+                                    : way.space == detail::all_directions ? all_directions
+                                                                          : detail::Stretch{};
+    if (way.space != detail::own && stretch.even) continue;
     LatticeOptions lattice{.edge = options.lattice_edge, .clearance = options.clearance};
     lattice.shift = vec::scaled(way.lattice, Vec3(0.37, 0.23, 0.11));
     std::vector<Vec3> inner;
     if (way.with_inner) inner = Lattice(distances, inner_size, lattice).points();
-    const Vec3 by = way.stretched ? stretch : Vec3(1, 1, 1);
     TetComplex complex;
     FillReport report = measured;
     try {
-      const auto start = way.shake > 0 ? detail::shaken(front, nodes, way.shake) : nodes;
-      const RecoveryCounts counts =
-          FrontRecovery::run(complex, front, scaled(start, by), scaled(std::move(inner), by), way.way);
+      auto start = way.shake > 0 ? detail::shaken(front, nodes, way.shake) : nodes;
+      const RecoveryCounts counts = FrontRecovery::run(complex, front, detail::mapped(start, stretch.to),
+                                                       detail::mapped(std::move(inner), stretch.to), way.way);
       report.missing_edges = counts.missing_edges;
       report.missing_faces = counts.missing_faces;
       report.steiner = counts.steiner;
-      complex.points = scaled(std::move(complex.points), Vec3(1 / by[0], 1 / by[1], 1 / by[2]));
+      complex.points = detail::mapped(std::move(complex.points), stretch.back);
+      std::copy(start.begin(), start.end(), complex.points.begin());
       report.improvement = Improve::run(complex, detail::surface_limits(front, nodes), target);
-      if (way.shake > 0) std::copy(nodes.begin(), nodes.end(), complex.points.begin());
+      std::copy(nodes.begin(), nodes.end(), complex.points.begin());
       detail::verify(complex, front, options, report);
     } catch (const MeshError&) {
-      if (way.shake == 0) throw;
-      continue;  // shaken too much
+      if (way.shake == 0 && way.space == detail::own) throw;
+      continue;  // moved too far by the shake or by rounding
     } catch (const RecoveryFailure& failure) {
-      if (!last) continue;
-      throw MeshError(std::string("the surface could not be filled: ") + failure.what + ", at " +
-                      place(failure.place));
+      if (first_failure.empty()) first_failure = std::string(failure.what) + ", at " + place(failure.place);
+      continue;
     }
     ++fillings;
     if (best.report.tetrahedra > 0 && !(report.min_dihedral > best.report.min_dihedral)) continue;
@@ -249,6 +246,7 @@ FillResult tetrahedra(const mesh::Surface& surface, const FillOptions& options, 
     report.nodes = best.mesh.node_count();
     best.report = report;
   }
+  if (best.report.tetrahedra == 0) throw MeshError("the surface could not be filled: " + first_failure);
   return best;
 }
 
