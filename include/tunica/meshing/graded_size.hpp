@@ -26,8 +26,6 @@ class GradedSize {
       : tree_(std::move(places)), growth_(growth), most_(most) {}
 
   [[nodiscard]] double operator()(const Vec3& x) const { return tree_.least(x, growth_, most_); }
-  [[nodiscard]] double growth() const { return growth_; }
-  [[nodiscard]] double most() const { return most_; }
 
  private:
   TriangleTree tree_;
