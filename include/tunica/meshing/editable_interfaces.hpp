@@ -104,10 +104,19 @@ class EditableInterfaces : public InterfaceRings {
   bool move(Index n, const Vec3& to) {
     const std::vector<Index> gone = ring_[at(n)];
     std::vector<Made> made;
-    for (const Index t : gone) made.push_back({nodes(t), s_.sides[at(t)]});
+    std::vector<Vec3> normals;
+    for (const Index t : gone) {
+      made.push_back({nodes(t), s_.sides[at(t)]});
+      normals.push_back(triangle(nodes(t)).area_vector());
+    }
     const Before before = measure(gone, n);
     const Vec3 from = std::exchange(s_.nodes[at(n)], to);
-    const bool good = allowed(made, gone, before, most_turn, std::min(least_moved, before.angle));
+    bool good = true;  // each triangle turns from itself alone: on rough sheets they differ from their mean
+    for (std::size_t i = 0; i < made.size() && good; ++i) {
+      const Vec3 area = triangle(made[i].nodes).area_vector();
+      good = vec::dot(area, normals[i]) > flip_turn * vec::length(area) * vec::length(normals[i]);
+    }
+    good = good && allowed(made, gone, before, any_turn, std::min(least_moved, before.angle));
     s_.nodes[at(n)] = from;
     if (!good) return false;
     for (const Index t : gone) grid_.remove(t);
@@ -136,9 +145,9 @@ class EditableInterfaces : public InterfaceRings {
 
  private:
   enum Kind { sheet, curve, corner };  // a node inside a sheet, on a junction curve, where such curves end
-  // Cosines: a triangle may turn by 75 degrees from the mean of what it replaces, by 45 in a flip; two sheets
-  // meet at 20 degrees or more, or as sharply as before.
-  static constexpr double most_turn = 0.26, flip_turn = 0.7, sharp = 0.94;
+  // Cosines: a triangle may turn by 75 degrees from the mean of what it replaces, by 45 in a flip or a move;
+  // two sheets meet at 20 degrees or more, or as sharply as before.
+  static constexpr double any_turn = -2, most_turn = 0.26, flip_turn = 0.7, sharp = 0.94;
   static constexpr double most_worn = 0.03;    // of a region's volume, in one collapse
   static constexpr double least_moved = 0.17;  // [rad] 10 degrees: no move makes thinner triangles
 
@@ -162,7 +171,8 @@ class EditableInterfaces : public InterfaceRings {
       const auto n = std::find_if(before.normals.begin(), before.normals.end(),
                                   [&](const auto& p) { return p.first == m.sides; });
       const Vec3 area = f.area_vector();
-      if (!(vec::dot(area, n->second) > least_cosine * vec::length(area) * vec::length(n->second)))
+      if (least_cosine > any_turn &&
+          !(vec::dot(area, n->second) > least_cosine * vec::length(area) * vec::length(n->second)))
         return false;
       if (!(f.smallest_angle() >= least_angle)) return false;
     }
