@@ -29,7 +29,7 @@ struct HexFillOptions {
 
 struct [[nodiscard]] HexFillReport {
   Index cells = 0;
-  Index inverted = 0;         // cells with a scaled Jacobian <= 0 at a corner or the centre
+  Index inverted = 0;         // cells whose determinant is not positive everywhere
   double least_jacobian = 0;  // scaled Jacobian of the worst cell
   Vec3 worst_place{0, 0, 0};  // its centre
   double mean_jacobian = 0;
@@ -49,6 +49,23 @@ struct [[nodiscard]] HexFill {
 };
 
 namespace detail {
+
+/// The grid of a surface with its facets as regions. Where lines of the grid run along triangles wherever it
+/// is shifted, as they may on integer data, the spacing is a little less.
+[[nodiscard]] inline HermiteGrid grid_of(const mesh::Surface& surface, const Facets& facets, double spacing) {
+  constexpr int attempts = 4;
+  constexpr double less = 0.983;
+  mesh::Surface labelled = surface;
+  labelled.region = facets.of;
+  labelled.region_names.assign(facets.region.size(), "");
+  for (int attempt = 1;; ++attempt, spacing *= less) {
+    try {
+      return hermite_of_surface(labelled, {.spacing = spacing});
+    } catch (const MeshError&) {
+      if (attempt == attempts) throw;
+    }
+  }
+}
 
 [[nodiscard]] inline mesh::HexMesh mesh_of(const HexComplex& hexes, const mesh::Surface& surface,
                                            const Facets& facets) {
@@ -75,7 +92,7 @@ inline void measure(const HexComplex& hexes, const SurfaceGuide& guide, const me
   HexFillReport& r = fill.report;
   const auto q = mesh::quality(fill.mesh);
   r.cells = fill.mesh.cell_count();
-  r.inverted = q.inverted;
+  for (const auto& cell : hexes.cells) r.inverted += positive_everywhere(hexes.nodes, cell) ? 0 : 1;
   r.least_jacobian = q.scaled_jacobian.least, r.worst_place = q.worst_place;
   r.mean_jacobian = q.scaled_jacobian.mean;
   r.first_percentile = q.scaled_jacobian.quantile(0.01);
@@ -118,7 +135,9 @@ inline void level(HexComplex& hexes, SurfaceGuide& guide, const HexFillOptions& 
     again = false;
     for (const auto& cell : hexes.cells) {
       const double now = hex_jacobian(hexes.nodes, cell);
-      if (now >= good || now >= hex_jacobian(x, cell)) continue;
+      if ((now >= good || now >= hex_jacobian(x, cell)) &&
+          (positive_everywhere(hexes.nodes, cell) || !positive_everywhere(x, cell)))
+        continue;
       for (const Index n : cell) {
         const auto i = static_cast<std::size_t>(n);
         if (hexes.nodes[i] != x[i]) hexes.nodes[i] = x[i], again = true;
@@ -130,14 +149,13 @@ inline void level(HexComplex& hexes, SurfaceGuide& guide, const HexFillOptions& 
 }  // namespace detail
 
 /// surface: closed, oriented outward. Flat regions stay flat, their faces lie in their planes exactly.
-/// MeshError where the surface is open or thinner than the grid everywhere.
+/// MeshError where the surface is open or inward, or thinner than the grid everywhere.
 [[nodiscard]] inline HexFill dual_hexahedra(const mesh::Surface& surface, const HexFillOptions& options) {
   TUNICA_EXPECT(options.edge > 0, "hexahedra have an edge length");
   const Facets facet = facets(surface, options.sharp_angle);
-  mesh::Surface labelled = surface;
-  labelled.region = facet.of;
-  labelled.region_names.assign(facet.region.size(), "");
-  HermiteGrid grid = hermite_of_surface(labelled, {.spacing = options.edge});
+  if (!(mesh::enclosed_volume(surface) > 0))
+    throw MeshError("the surface is oriented inward: it has no inside to fill with hexahedra");
+  HermiteGrid grid = detail::grid_of(surface, facet, options.edge);
   GridSpecks specks = remove_specks(grid, 8);
   const mesh::QuadSurface contour = dual_contour(grid);
   HexComplex hexes = dual_complex(grid, contour);

@@ -57,18 +57,4 @@ struct CornerShape {
   return {edge(0), edge(1), edge(2)};
 }
 
-/// Side of each axis on which a corner lies.
-inline constexpr std::array<std::array<int, 3>, 8> hex_sides{
-    {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
-
-/// Means of the edges along each axis.
-[[nodiscard]] inline std::array<Vec3, 3> middle_edges(const std::vector<Vec3>& x, const HexNodes& cell) {
-  std::array<Vec3, 3> sum;
-  sum.fill(Vec3(0, 0, 0));
-  for (std::size_t k = 0; k < 8; ++k)
-    for (std::size_t a = 0; a < 3; ++a)
-      sum[a] = vec::along(sum[a], 0.25 * hex_sides[k][a], x[static_cast<std::size_t>(cell[k])]);
-  return sum;
-}
-
 }  // namespace tunica::meshing::detail

@@ -7,6 +7,7 @@
 #include "tunica/meshing/hex_graph.hpp"
 #include "tunica/meshing/hex_guide.hpp"
 #include "tunica/meshing/hex_jacobian.hpp"
+#include "tunica/meshing/hex_points.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,12 +17,15 @@
 
 namespace tunica::meshing::detail {
 
+/// Where scaled Jacobians are looked at: at the corners, at the centre too, or at all of hex_points.
+enum class HexPlaces { corners, centre, all };
+
 /// What counts as short.
 struct HexGoal {
-  double jacobian = 0;   // of a corner
-  double side = 0;       // below which an edge is short [length]
-  bool centres = false;  // the centres of the cells count like their corners
-  bool worst = false;    // fourth powers are summed instead of squares
+  double jacobian = 0;  // of a corner
+  double side = 0;      // below which an edge is short [length]
+  HexPlaces places = HexPlaces::corners;
+  bool worst = false;  // fourth powers are summed instead of squares
 };
 
 /// E = sum (goal - s)^2 over the corners with s below the goal, + sum (1 - l / side)^2 over short edges.
@@ -39,9 +43,12 @@ class HexShortfall {
       const auto e = corner_edges(x_, cell, k);
       if (!(corner_jacobian(e[0], e[1], e[2]) >= goal.jacobian)) return true;
     }
-    if (!goal.centres) return false;
-    const auto e = middle_edges(x_, cell);
-    return !(corner_jacobian(e[0], e[1], e[2]) >= goal.jacobian);
+    for (std::size_t p = 0; p < 27; ++p) {
+      if (!looked_at(p)) continue;
+      const auto e = point_edges(x_, cell, p);
+      if (!(corner_jacobian(e[0], e[1], e[2]) >= goal.jacobian)) return true;
+    }
+    return false;
   }
 
   /// One Gauss-Newton step of the node, no longer than `most`, shortened until E falls while the node stays
@@ -68,7 +75,7 @@ class HexShortfall {
   static constexpr double largest_step = 0.3;  // of the mean edge at the node
   static constexpr int trials = 4;
   static constexpr double shortening = 0.4, least_gain = 1e-4, damping = 1e-2;
-  static constexpr std::array<int, 3> own{-1, -1, -1};
+  using Weights = std::array<double, 3>;
 
   /// The normal equations A d = b of the shortfalls r_i with gradients g_i: A = sum w g g^T, symmetric
   /// positive semidefinite, b = sum w r g.
@@ -99,31 +106,40 @@ class HexShortfall {
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-  /// Visits the edges of the corners, and of the centres, that the node is part of; by: how an edge
-  /// changes with the node.
+  [[nodiscard]] bool looked_at(std::size_t p) const {
+    return goal.places == HexPlaces::all ? !is_hex_corner(p)
+                                         : goal.places == HexPlaces::centre && p == hex_centre;
+  }
+
+  /// Visits the derivatives of the map at the places that the node is part of; by: how they change with the
+  /// node; own: it is the corner where they are taken.
   template <class Visit>
-  void corners(Index n, Visit&& visit) const {
+  void places(Index n, Visit&& visit) const {
     for (const Index c : graph_.cells(n)) {
       const auto& cell = cells_[at(c)];
       const auto k = static_cast<std::size_t>(std::find(cell.begin(), cell.end(), n) - cell.begin());
-      visit(corner_edges(x_, cell, k), own, 1.0);
+      visit(corner_edges(x_, cell, k), Weights{-1, -1, -1}, true);
       for (const int m : mesh::hex_corner_axes[k]) {
         const auto corner = static_cast<std::size_t>(m);
         const auto& ax = mesh::hex_corner_axes[corner];
-        std::array<int, 3> by{};
+        Weights by{};
         for (std::size_t a = 0; a < 3; ++a) by[a] = ax[a] == static_cast<int>(k) ? 1 : 0;
-        visit(corner_edges(x_, cell, corner), by, 1.0);
+        visit(corner_edges(x_, cell, corner), by, false);
       }
-      if (goal.centres) visit(middle_edges(x_, cell), hex_sides[k], 0.25);
+      if (goal.places == HexPlaces::corners) continue;
+      for (std::size_t p = 0; p < 27; ++p)
+        if (looked_at(p))
+          visit(point_edges(x_, cell, p),
+                Weights{hex_points.by[p][0][k], hex_points.by[p][1][k], hex_points.by[p][2][k]}, false);
     }
   }
 
   [[nodiscard]] double sum(Index n) const {
     double sum = 0;
-    corners(n, [&](const std::array<Vec3, 3>& e, const std::array<int, 3>& by, double part) {
+    places(n, [&](const std::array<Vec3, 3>& e, const Weights&, bool own) {
       const double r = goal.jacobian - corner_jacobian(e[0], e[1], e[2]);
       if (r > 0) sum += goal.worst ? r * r * r * r : r * r;
-      if (by != own || part < 1) return;
+      if (!own) return;
       for (const Vec3& side : e) {
         const double square = vec::squared(side);
         if (square >= goal.side * goal.side) continue;
@@ -137,8 +153,8 @@ class HexShortfall {
   [[nodiscard]] System system(Index n) {
     System s;
     int sides = 0;
-    corners(n, [&](const std::array<Vec3, 3>& e, const std::array<int, 3>& by, double part) {
-      if (by == own && part == 1) {
+    places(n, [&](const std::array<Vec3, 3>& e, const Weights& by, bool own) {
+      if (own) {
         sides += 3;
         for (const Vec3& side : e) {
           const double l = vec::length(side);
@@ -152,7 +168,7 @@ class HexShortfall {
       if (!(r > 0)) return;
       Vec3 g(0, 0, 0);
       for (std::size_t a = 0; a < 3; ++a)
-        if (by[a] != 0) g = vec::along(g, part * by[a], c.by[a]);
+        if (by[a] != 0) g = vec::along(g, by[a], c.by[a]);
       s.add(r, goal.worst ? r * r : 1, guide_.way(n, g));
     });
     s.size /= std::max(sides, 1);

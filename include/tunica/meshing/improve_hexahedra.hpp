@@ -52,12 +52,17 @@ class HexImprover {
     start_ = x_;
     for (int sweep = 0; sweep < options_.sweeps; ++sweep) average();
     const double above = options_.sound + margin, side = options_.shortest * edge_;
-    raise({.jacobian = above, .side = side, .centres = true}, options_.rescues);
-    raise({.jacobian = options_.target, .side = side}, options_.passes);
-    if (!all_sound()) raise({options_.target, side, true, true}, options_.rescues);
+    raise_all({.jacobian = above, .side = side, .places = HexPlaces::centre}, options_.rescues);
+    raise_all({.jacobian = options_.target, .side = side}, options_.passes);
+    if (!all_sound()) raise_all({options_.target, side, HexPlaces::centre, true}, options_.rescues);
     for (int round = 1; round <= releases && !all_sound(); ++round) {
       release(round);
-      raise({above, side, true, true}, options_.rescues);
+      for (int sweep = 0; sweep < relaxing; ++sweep)
+        for (const Index n : loosened_) average(n);
+      for (const double jacobian : {loosened, above}) {
+        suspect_loosened();
+        raise({jacobian, side, HexPlaces::all, true}, options_.rescues);
+      }
     }
     return report_;
   }
@@ -66,47 +71,68 @@ class HexImprover {
   static constexpr double margin = 0.1;   // beyond what is sound, so that it is passed
   static constexpr double farthest = 2;   // that a node goes from where it was laid [edge]
   static constexpr double longest = 0.3;  // step [edge]
-  static constexpr int releases = 3;
+  // Where nodes leave the surface all around are drawn to their neighbours' means before they are moved
+  // again, towards more than is wanted: the cells get out of where they were stuck.
+  static constexpr int releases = 6, relaxing = 3;
+  static constexpr double loosened = 0.5;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   void average() {
     const double reach = options_.reach * edge_;
     for (const Index n : graph_.near()) {
-      const auto near = graph_.neighbours(n);
-      if (near.empty()) continue;
-      Vec3 sum(0, 0, 0);
-      for (const Index m : near) sum = vec::plus(sum, x_[at(m)]);
-      Vec3 way = vec::minus(vec::divided(sum, static_cast<double>(near.size())), start_[at(n)]);
-      const double far = vec::squared(way);
-      if (far > reach * reach) way = vec::scaled(reach / std::sqrt(far), way);
-      x_[at(n)] = guide_.placed(n, vec::plus(start_[at(n)], way));
+      const Vec3 way = vec::minus(mean(n), start_[at(n)]);
+      const double far = vec::squared(way), part = far > reach * reach ? reach / std::sqrt(far) : 1;
+      x_[at(n)] = guide_.placed(n, vec::along(start_[at(n)], part, way));
     }
   }
+  void average(Index n) { x_[at(n)] = guide_.placed(n, mean(n)); }
 
-  /// Leaves in suspects_ all cells that fall short.
-  void find_suspects() {
+  /// Of the neighbours; far from the border the node itself.
+  [[nodiscard]] Vec3 mean(Index n) const {
+    const auto near = graph_.neighbours(n);
+    if (near.empty()) return x_[at(n)];
+    Vec3 sum(0, 0, 0);
+    for (const Index m : near) sum = vec::plus(sum, x_[at(m)]);
+    return vec::divided(sum, static_cast<double>(near.size()));
+  }
+
+  void raise_all(const HexGoal& goal, int passes) {
     suspects_.resize(hexes_.cells.size());
     std::iota(suspects_.begin(), suspects_.end(), Index{0});
-    sift();
+    raise(goal, passes);
   }
+
+  /// The cells that have a loosened node.
+  void suspect_loosened() {
+    suspects_.clear();
+    for (const Index n : loosened_)
+      suspects_.insert(suspects_.end(), graph_.cells(n).begin(), graph_.cells(n).end());
+    std::sort(suspects_.begin(), suspects_.end());
+    suspects_.erase(std::unique(suspects_.begin(), suspects_.end()), suspects_.end());
+  }
+
   void sift() {
     std::erase_if(suspects_, [&](Index c) { return !shortfall_.falls_short(c); });
   }
 
+  /// Suspects are cells that are not sound, or whose determinant is not positive everywhere.
   [[nodiscard]] bool all_sound() {
-    shortfall_.goal = {.jacobian = options_.sound, .centres = true};
-    find_suspects();
+    shortfall_.goal = {.jacobian = options_.sound, .places = HexPlaces::centre};
+    suspects_.clear();
+    for (std::size_t c = 0; c < hexes_.cells.size(); ++c)
+      if (shortfall_.falls_short(static_cast<Index>(c)) || !positive_everywhere(x_, hexes_.cells[c]))
+        suspects_.push_back(static_cast<Index>(c));
     return suspects_.empty();
   }
 
-  /// Passes over the nodes of the cells below the goal until there are none, or nothing moves. After the
+  /// Passes over the nodes of the suspects below the goal until there are none, or nothing moves. After the
   /// first pass cells are looked at again only if they fell short or a node of theirs has moved.
   void raise(const HexGoal& goal, int passes) {
     shortfall_.goal = goal;
     std::vector<char> wanted(x_.size(), 0), suspect(hexes_.cells.size(), 0);
     std::vector<Index> nodes;
-    find_suspects();
+    sift();
     for (int pass = 0; pass < passes && !suspects_.empty(); ++pass, sift()) {
       nodes.clear();
       for (const Index c : suspects_) {
@@ -129,22 +155,27 @@ class HexImprover {
     }
   }
 
-  /// The surface's nodes of the suspects, in the last rounds of the cells around them too, may leave it.
+  /// The surface's nodes of the suspects, in later rounds of the cells around them too, may leave it. All
+  /// nodes up to two cells away are loosened.
   void release(int round) {
-    std::vector<Index> nodes;
     std::vector<char> seen(x_.size(), 0);
+    loosened_.clear();
     const auto take = [&](Index c) {
       for (const Index n : hexes_.cells[at(c)])
-        if (seen[at(n)] == 0) seen[at(n)] = 1, nodes.push_back(n);
+        if (seen[at(n)] == 0) seen[at(n)] = 1, loosened_.push_back(n);
     };
     for (const Index c : suspects_) take(c);
+    const double reach = std::min(round, 3) * options_.release * edge_;
     std::size_t from = 0;
-    for (int ring = 1; ring < round; ++ring)
-      for (const std::size_t to = nodes.size(); from < to; ++from)
-        for (const Index c : graph_.cells(nodes[from])) take(c);
-    for (const Index n : nodes)
-      if (!hexes_.sites[at(n)].inside() && guide_.release(n, round * options_.release * edge_))
-        ++report_.released;
+    for (int ring = 0; ring < std::max(round, 2); ++ring) {
+      const std::size_t to = loosened_.size();
+      if (ring < round)
+        for (std::size_t i = from; i < to; ++i)
+          if (!hexes_.sites[at(loosened_[i])].inside() && guide_.release(loosened_[i], reach))
+            ++report_.released;
+      for (; from < to; ++from)
+        for (const Index c : graph_.cells(loosened_[from])) take(c);
+    }
   }
 
   std::vector<Vec3>& x_;
@@ -155,7 +186,7 @@ class HexImprover {
   const HexGraph graph_;
   HexShortfall<Guide> shortfall_;
   std::vector<Vec3> start_;
-  std::vector<Index> suspects_;
+  std::vector<Index> suspects_, loosened_;
   HexImproveReport report_;
 };
 
