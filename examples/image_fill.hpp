@@ -47,7 +47,9 @@ inline void add_fill_options(Cli& cli, FillChoice& o) {
              "layers of tetrahedra at the wall, each 1.2 times as high as the one outside it (0)",
              [&o](const std::string& text) {
                o.layers = number_of<int>(text);
-               if (o.layers < 0) throw UsageError("must be 0 or more");
+               constexpr int most = 30;  // the lowest is then 200 times as low as the highest
+               if (o.layers < 0 || o.layers > most)
+                 throw UsageError("must be from 0 to " + std::to_string(most));
              });
 }
 
@@ -173,10 +175,22 @@ inline void fill_triangles(const FillChoice& how, const ImageVessel& vessel, Fil
   });
 }
 
+/// A grid over the surface that would not be held in memory is refused before it is made.
+inline void require_grid(const mesh::Surface& s, double edge) {
+  constexpr double most = 1e9;
+  const Box box = mesh::bounding_box(s.nodes);
+  double nodes = 1;
+  for (int a = 0; a < 3; ++a) nodes *= (box.hi[a] - box.lo[a]) / edge + 1;
+  if (!(nodes <= most))
+    throw MeshError("an edge length of " + short_text(edge) + " would take a grid of " + short_text(nodes) +
+                    " nodes, more than " + short_text(most));
+}
+
 /// Hexahedra of a grid over the cut surface.
 inline void fill_hexahedra(const ImageVessel& vessel, FilledVessel& out, Stages& stage, Json& report) {
   const auto cut = surface_of(vessel, stage, report);
   report["edge"] = vessel.edge;
+  require_grid(cut, vessel.edge);
   auto filled = stage("fill", [&] { return meshing::dual_hexahedra(cut, {.edge = vessel.edge}); });
   out.hexes = std::move(filled.mesh);
   const auto q = mesh::quality(out.hexes);

@@ -219,7 +219,10 @@ TEST_SUITE("job") {
     refused(*good, " --iso 1 --smooth 1.5", 2, "--smooth: \"1.5\" is not a whole number");
     refused(*good, " --iso 1 --fill hexagons", 2, "is none of tets|hexes|voxels|none");
     refused(*good, " --iso 1 --fill hexes --layers 2", 2, "--layers needs --fill tets");
-    refused(*good, " --iso 1 --layers -1", 2, "--layers: must be 0 or more");
+    refused(*good, " --iso 1 --layers -1", 2, "--layers: must be from 0 to 30");
+    refused(*good, " --iso 1 --layers 31", 2, "--layers: must be from 0 to 30");
+    refused(*good, " --iso 1299.5 --fill hexes --edge 0.01" + seed + cuts, 1,
+            "an edge length of 0.01 would take a grid of ");
     refused(*good, " --iso 1 --fill voxels --size-from diameter", 2, "--size-from needs --fill tets or none");
     refused(*good, " --iso 1 --size-from curvature --edge 0", 2,
             "--size-from needs an --edge of more than 0");
