@@ -2,6 +2,7 @@
 // Boundary layers: prisms split alike from both sides, heights as asked for, flat ends kept, the whole mesh
 // as promised.
 #include "tunica/meshing/boundary_layers.hpp"
+#include "tunica/meshing/layered_prisms.hpp"
 
 #include "support/layers.hpp"
 #include "support/surfaces.hpp"
@@ -25,6 +26,36 @@ namespace layers = test::layers;
 
 const meshing::PrismCorners right_prism{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0),
                                         Vec3(0, 0, 2), Vec3(1, 0, 2), Vec3(0, 1, 2)};
+
+/// Adds the faces of the cells, each from its smallest node on as it turns, to those still open: a face meets
+/// its reverse once.
+template <class C>
+void meet(std::set<std::vector<Index>>& open, const mesh::Mesh<C, 3>& m, bool outward, int& wrong) {
+  const auto turned = [](std::vector<Index> f) {
+    std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+    return f;
+  };
+  const auto meet_one = [&](std::vector<Index> f) {
+    if (!outward) std::reverse(f.begin(), f.end());
+    const auto here = turned(f);
+    std::reverse(f.begin(), f.end());
+    if (open.erase(turned(f)) == 0) wrong += !open.insert(here).second;
+  };
+  for (Index c = 0; c < m.cell_count(); ++c) {
+    if constexpr (C::dim == 2) {
+      std::vector<Index> f;
+      for (int k = 0; k < C::nodes; ++k) f.push_back(m.cells(k, c));
+      meet_one(f);
+    } else {
+      for (const auto& face : C::faces) {
+        std::vector<Index> f;
+        for (const int k : face)
+          if (f.empty() || f.back() != m.cells(k, c)) f.push_back(m.cells(k, c));
+        meet_one(f);
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -175,5 +206,52 @@ TEST_SUITE("unit") {
     Surface inward = s;
     inward.cells.row(1).swap(inward.cells.row(2));
     CHECK_THROWS_AS((void)meshing::layered_tetrahedra(inward), MeshError);
+  }
+
+  TEST_CASE("meshing: layers kept as prisms conform with the core and with the flat ends") {
+    std::vector<Surface> surfaces{test::tube_surface(24, 12, 4), test::tube_surface(24, 12, 4)};
+    Surface& dented = surfaces.back();  // a node of the rim and one of the wall pulled out to sharp tips
+    dented.nodes.col(3) *= 3, dented.nodes.col(24 * 6 + 5).head<2>() *= 4;
+    for (const Surface& s : surfaces) {
+      const auto fill = meshing::layered_prisms(s, {.layers = 3});
+      MESSAGE(fill.prisms.cell_count()
+              << " prisms, " << fill.pyramids.cell_count() << " pyramids, " << fill.tets.cell_count()
+              << " tetrahedra, " << fill.report.vanished << " columns vanished");
+      CHECK((fill.pyramids.cell_count() > 0) == (fill.report.vanished > 0));
+      std::set<std::vector<Index>> open;
+      int wrong = 0;
+      meet(open, fill.prisms, true, wrong), meet(open, fill.pyramids, true, wrong);
+      meet(open, fill.tets, true, wrong);
+      meet(open, fill.triangles, false, wrong), meet(open, fill.quads, false, wrong);
+      CHECK(wrong == 0);
+      CHECK(open.empty());
+      double volume = mesh::volume(fill.tets);
+      int inverted = 0;
+      for (Index c = 0; c < fill.prisms.cell_count(); ++c) {
+        meshing::Prism p{};
+        meshing::PrismCorners x;
+        for (std::size_t k = 0; k < 6; ++k) {
+          p[k] = fill.prisms.cells(static_cast<Eigen::Index>(k), c);
+          x[k] = fill.prisms.nodes.col(p[k]);
+        }
+        inverted += !(meshing::prism_quality(x, 1) > 0);
+        meshing::split_prism({0, 1, 2, 3, 4, 5}, {p[0], p[1], p[2]}, [&](const std::array<Index, 4>& t) {
+          const auto y = [&](std::size_t i) { return x[static_cast<std::size_t>(t[i])]; };
+          volume += meshing::orient3d(y(0), y(1), y(2), y(3)) / 6;
+        });
+      }
+      for (Index c = 0; c < fill.pyramids.cell_count(); ++c) {
+        const auto x = [&](int k) { return Vec3(fill.pyramids.nodes.col(fill.pyramids.cells(k, c))); };
+        const bool first = fill.pyramids.cells(0, c) < fill.pyramids.cells(3, c);  // as the prism beside it
+        for (const auto& [i, j, k] :
+             std::array<std::array<int, 3>, 4>{{{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}}}) {
+          const double six = meshing::orient3d(x(i), x(j), x(k), x(4));
+          inverted += !(six > 0);
+          if ((k == 3 && (j == 1 || i == 1)) != first) volume += six / 6;
+        }
+      }
+      CHECK(inverted == 0);
+      CHECK(volume == doctest::Approx(fill.report.volume).epsilon(1e-12));
+    }
   }
 }
