@@ -6,18 +6,33 @@ cd "$(dirname "$0")/.."
 mkdir -p docs/figures
 gnuplot <<'PLOT'
 set datafile separator ","
-set terminal svg size 640,440 font "sans,13" background "white"
+set terminal svg size 1180,420 font "sans,13" background "white"
 set output "docs/figures/isosurface.svg"
 set logscale xy
 set format "10^{%L}"
 set xlabel "CPU time [s]"
-set ylabel "rms distance of the vertices to the surface [edge of the cube]"
 set grid
-set key top right
 rows = "bench/results/isosurface.csv"
-plot rows using (strcol(2) eq "marching cubes" ? $6 : NaN):5 with linespoints pt 7 lw 2 title "marching cubes", \
-     rows using (strcol(2) eq "vtkFlyingEdges3D" ? $6 : NaN):5 with linespoints pt 6 lw 2 title "vtkFlyingEdges3D"
+of(what, method) = sprintf('< grep "^bifurcation %s,%s," %s', what, method, rows)
+set multiplot layout 1,3
+set key top right
+set ylabel "distance of the vertices, rms [edge of the cube]"
+plot of("rms", "marching cubes") using 6:5 with linespoints pt 7 lw 2 title "marching cubes", \
+     of("rms", "dual contouring") using 6:5 with linespoints pt 5 lw 2 title "dual contouring", \
+     of("rms", "vtkFlyingEdges3D") using 6:5 with linespoints pt 6 lw 2 title "vtkFlyingEdges3D"
+set key off
+set ylabel "distance of the vertices, largest [edge of the cube]"
+plot of("max", "marching cubes") using 6:5 with linespoints pt 7 lw 2 title "marching cubes", \
+     of("max", "dual contouring") using 6:5 with linespoints pt 5 lw 2 title "dual contouring", \
+     of("max", "vtkFlyingEdges3D") using 6:5 with linespoints pt 6 lw 2 title "vtkFlyingEdges3D"
+set ylabel "error of the volume [-]"
+plot of("volume", "marching cubes") using 6:5 with linespoints pt 7 lw 2 title "marching cubes", \
+     of("volume", "dual contouring") using 6:5 with linespoints pt 5 lw 2 title "dual contouring", \
+     of("volume", "vtkFlyingEdges3D") using 6:5 with linespoints pt 6 lw 2 title "vtkFlyingEdges3D"
+unset multiplot
 
+set terminal svg size 640,440 font "sans,13" background "white"
+set key top right
 set output "docs/figures/thick_tube.svg"
 set ylabel "error of the inner stretch [-]"
 rows = "bench/results/thick_tube.csv"
