@@ -9,6 +9,7 @@
 #include "tunica/meshing/dual_contouring.hpp"
 #include "tunica/meshing/dual_parts.hpp"
 #include "tunica/meshing/hex_complex.hpp"
+#include "tunica/meshing/loop_cells.hpp"
 
 #include <array>
 #include <cstddef>
@@ -224,7 +225,7 @@ class DualComplexBuilder {
   const HermiteGrid& grid_;
   const mesh::QuadSurface& contour_;
   std::array<std::size_t, 3> stride_;
-  DualCells cells_;
+  LoopCells cells_;
   ContourSheets sheets_;
   std::vector<std::array<Index, 2>>
       on_sheet_;  // of a rim node: the nodes beside it on sheet 0 and on the end
