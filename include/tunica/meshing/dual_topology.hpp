@@ -74,8 +74,13 @@ class DualTopology {
   [[nodiscard]] Index first_vertex(std::size_t cell) const { return vertex_[cell]; }
   /// Number of the first quadrilateral across an edge from row j of slice k of the nodes.
   [[nodiscard]] Index first_quad(std::size_t j, std::size_t k) const { return quad_[j + ny_ * k]; }
+  [[nodiscard]] Index end_quad(std::size_t j, std::size_t k) const { return quad_[j + ny_ * k + 1]; }
   [[nodiscard]] bool any_quad(std::size_t j, std::size_t k) const {
-    return quad_[j + ny_ * k] < quad_[j + ny_ * k + 1];
+    return first_quad(j, k) < end_quad(j, k);
+  }
+  /// The number of the cell with that lowest node; the surface must pass it.
+  [[nodiscard]] std::size_t find(std::size_t i, std::size_t j, std::size_t k) const {
+    return find(i, j + ny_ * k);
   }
 
   /// The crossed edges from word w of row j of slice k towards +x, +y and +z, a bit at the lower node of
@@ -132,8 +137,11 @@ class DualTopology {
                         std::size_t cells = 0;
                         Index quads = 0;
                         for (std::size_t w = 0; w < bits_.words(); ++w) {
-                          cells += static_cast<std::size_t>(std::popcount(mixed(row, w)));
-                          for (const std::uint64_t c : crossed(w, j, k)) quads += std::popcount(c);
+                          const std::uint64_t some = mixed(row, w);
+                          if (some == 0) continue;  // an edge is crossed only beside the cell of its node
+                          cells += static_cast<std::size_t>(std::popcount(some));
+                          for (const std::uint64_t c : crossed(w, j, k))
+                            if (c != 0) quads += std::popcount(c);
                         }
                         cell_[r + 1] = cells, quad_[r + 1] = quads;
                       }
@@ -184,10 +192,10 @@ class DualTopology {
           }
   }
 
-  [[nodiscard]] std::size_t find(std::uint32_t i, std::size_t row) const {
+  [[nodiscard]] std::size_t find(std::size_t i, std::size_t row) const {
     const auto from = at_.begin() + static_cast<std::ptrdiff_t>(cell_[row]),
                to = at_.begin() + static_cast<std::ptrdiff_t>(cell_[row + 1]);
-    return static_cast<std::size_t>(std::lower_bound(from, to, i) - at_.begin());
+    return static_cast<std::size_t>(std::lower_bound(from, to, static_cast<std::uint32_t>(i)) - at_.begin());
   }
 
   void split(std::size_t c, std::size_t face) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -54,6 +55,41 @@ struct PlaneSums {
   }
 };
 
+/// Eigenvalues and vectors (columns) of A by cyclic Jacobi to the rounding of its trace, which is enough for
+/// a cut; twice as fast as SymmetricEigen, which keeps the relative accuracy of small ones.
+struct PlaneEigen {
+  std::array<double, 3> value;
+  std::array<std::array<double, 3>, 3> vector{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // one after the other
+
+  explicit PlaneEigen(const PlaneSums& s) : value{s.xx, s.yy, s.zz} {
+    std::array<double, 3> off{s.yz, s.xz, s.xy};  // opposite to each axis
+    const double rounding = 1e-17 * s.trace();
+    constexpr int most_sweeps = 12;
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+      if (!(std::abs(off[0]) + std::abs(off[1]) + std::abs(off[2]) > rounding)) break;
+      turn<0, 1>(off), turn<0, 2>(off), turn<1, 2>(off);
+    }
+  }
+
+ private:
+  template <std::size_t P, std::size_t Q>
+  void turn(std::array<double, 3>& off) {
+    constexpr std::size_t R = 3 - P - Q;
+    const double apq = off[R];
+    if (apq == 0) return;
+    const double theta = (value[Q] - value[P]) / (2 * apq);
+    const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::sqrt(theta * theta + 1));
+    const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+    value[P] -= t * apq, value[Q] += t * apq;
+    const double arp = off[Q], arq = off[P];
+    off[R] = 0, off[Q] = c * arp - s * arq, off[P] = s * arp + c * arq;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double vp = vector[P][i], vq = vector[Q][i];
+      vector[P][i] = c * vp - s * vq, vector[Q][i] = s * vp + c * vq;
+    }
+  }
+};
+
 struct LeastErrorOptions {
   double cut = 0.04;  // eigenvalues below this share of the largest are cut: the square of QefOptions::cut
   double smooth = 1;  // share of the step from the mass point where the surface is smooth: rank 1
@@ -81,8 +117,8 @@ struct LeastStep {
 /// its sides, edges or corners. Axes whose bounds are equal stay there.
 [[nodiscard]] inline Vec3 least_error_held(const PlaneSums& sums, const Box& box,
                                            const LeastErrorOptions& options) {
-  const SymmetricEigen eigen(sums.matrix());
-  const double cut = options.cut * std::max({0.0, eigen.values[0], eigen.values[1], eigen.values[2]});
+  const PlaneEigen eigen(sums);
+  const double cut = options.cut * std::max({0.0, eigen.value[0], eigen.value[1], eigen.value[2]});
   Vec3 centre = sums.mass_point();
   for (int a = 0; a < 3; ++a) centre[a] = std::min(std::max(centre[a], box.lo[a]), box.hi[a]);
   const auto inside = [&](const Vec3& x) {
@@ -90,7 +126,7 @@ struct LeastStep {
            x[2] >= box.lo[2] && x[2] <= box.hi[2];
   };
   int rank = 0;
-  for (int i = 0; i < 3; ++i) rank += eigen.values[i] > cut;
+  for (const double value : eigen.value) rank += value > cut;
   const auto smoothed = [&](const Vec3& x) {
     return rank == 1 ? vec::between(centre, x, options.smooth) : x;
   };
@@ -100,10 +136,10 @@ struct LeastStep {
   if (fixed == 0) {
     const Vec3 r = sums.descent(centre);
     Vec3 x = centre;
-    for (int i = 0; i < 3; ++i) {
-      const double value = eigen.values[i];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double value = eigen.value[i];
       if (!(value > cut)) continue;
-      const Vec3 axis(eigen.vectors(0, i), eigen.vectors(1, i), eigen.vectors(2, i));
+      const Vec3 axis(eigen.vector[i][0], eigen.vector[i][1], eigen.vector[i][2]);
       x = vec::along(x, (rank == 1 ? options.smooth : 1) * vec::dot(axis, r) / value, axis);
     }
     if (inside(x)) return x;
@@ -112,29 +148,33 @@ struct LeastStep {
   const std::array<double, 3> beside{sums.yz, sums.xz, sums.xy};  // of the axes other than that
   Vec3 best = centre;
   double least = std::numeric_limits<double>::infinity();
-  for (int held = 1; held < 8; ++held) {  // a bit an axis at a bound
-    if ((static_cast<unsigned>(held) & fixed) != fixed) continue;
-    for (int side = held;; side = (side - 1) & held) {  // at the upper one
-      const bool twice = (static_cast<unsigned>(side) & fixed) != 0;
-      Vec3 x = centre;
-      for (int a = 0; a < 3; ++a)
-        if ((held >> a & 1) != 0) x[a] = (side >> a & 1) != 0 ? box.hi[a] : box.lo[a];
-      if (!twice) {
-        const Vec3 r = sums.descent(x);
-        for (int a = 0; a < 3; ++a) {
+  const auto keep = [&](const Vec3& x) {
+    if (const double error = sums.error(x); error < least) least = error, best = x;
+  };
+  const auto in = [&](const Vec3& x, int a) { return x[a] >= box.lo[a] && x[a] <= box.hi[a]; };
+  for (unsigned held = 1; held < 8; ++held) {  // a bit an axis at a bound
+    if ((held & fixed) != fixed) continue;
+    for (unsigned side = held;; side = (side - 1) & held) {  // at the upper one
+      if ((side & fixed) == 0) {
+        Vec3 x = centre;
+        for (int a = 0; a < 3; ++a)
+          if ((held >> a & 1U) != 0) x[a] = (side >> a & 1U) != 0 ? box.hi[a] : box.lo[a];
+        const int a = std::countr_zero(held), free = std::countr_zero(7 ^ held);
+        if (held == 7) {
+          keep(x);
+        } else if (std::popcount(held) == 2) {
+          const double d = diagonal[static_cast<std::size_t>(free)];
+          if (d > cut && d > 0) x[free] += sums.descent(x)[free] / d;
+          if (in(x, free)) keep(x);
+        } else {
           const int b = (a + 1) % 3, c = (a + 2) % 3;
-          if (held == 1 << a) {
-            const LeastStep step =
-                least_step(diagonal[static_cast<std::size_t>(b)], diagonal[static_cast<std::size_t>(c)],
-                           beside[static_cast<std::size_t>(a)], r[b], r[c], cut);
-            x[b] += step.x, x[c] += step.y;
-          } else if (held == (7 ^ 1 << a)) {
-            const double d = diagonal[static_cast<std::size_t>(a)];
-            if (d > cut && d > 0) x[a] += r[a] / d;
-          }
+          const Vec3 r = sums.descent(x);
+          const LeastStep step =
+              least_step(diagonal[static_cast<std::size_t>(b)], diagonal[static_cast<std::size_t>(c)],
+                         beside[static_cast<std::size_t>(a)], r[b], r[c], cut);
+          x[b] += step.x, x[c] += step.y;
+          if (in(x, b) && in(x, c)) keep(x);
         }
-        if (inside(x))
-          if (const double error = sums.error(x); error < least) least = error, best = x;
       }
       if (side == 0) break;
     }

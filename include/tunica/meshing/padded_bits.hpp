@@ -41,6 +41,20 @@ class PaddedBits {
                     });
   }
 
+  /// A byte a node, other than 0 inside; the layer is there already.
+  PaddedBits(const std::vector<std::uint8_t>& inside, const std::array<std::size_t, 3>& size)
+      : size_(size),
+        words_((size[0] + word_bits - 1) / word_bits),
+        bits_(words_ * size[1] * size[2], 0),
+        any_(size[1] * size[2], 0) {
+    for (std::size_t r = 0; r < size[1] * size[2]; ++r)
+      for (std::size_t i = 0; i < size[0]; ++i) {
+        if (inside[i + size[0] * r] == 0) continue;
+        bits_[words_ * r + i / word_bits] |= std::uint64_t{1} << i % word_bits;
+        any_[r] = 1;
+      }
+  }
+
   [[nodiscard]] std::size_t size(std::size_t axis) const { return size_[axis]; }
   [[nodiscard]] std::size_t words() const { return words_; }  // a row
   [[nodiscard]] const std::uint64_t* row(std::size_t j, std::size_t k) const {
