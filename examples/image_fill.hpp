@@ -239,6 +239,13 @@ inline void fill_voxels(const ImageVessel& vessel, FilledVessel& out, Stages& st
   return out;
 }
 
+/// Histograms and worst cells of all that was made.
+inline void tell_quality(const FilledVessel& v, Json& report) {
+  if (v.triangles.cell_count() > 0) tell_quality("surface", v.triangles, report);
+  if (v.tets.cell_count() > 0) tell_quality("tetrahedra", v.tets, report);
+  if (v.hexes.cell_count() > 0) tell_quality("hexahedra", v.hexes, report);
+}
+
 /// Stages of fill_image.
 [[nodiscard]] constexpr int fill_stages(Fill fill) {
   return segment_stages + (fill == Fill::voxels  ? 2

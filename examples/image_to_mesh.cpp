@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
     Stages stage(fill_stages(fill.fill) + 1);
     Json report;
     const auto vessel = fill_image(options, fill, stage, report);
+    if (!report_file.empty()) tell_quality(vessel, report);
     OutputFiles files;
     stage("write", [&] {
       io::VtuData data;
