@@ -213,11 +213,13 @@ TEST_SUITE("unit") {
     Surface& dented = surfaces.back();  // a node of the rim and one of the wall pulled out to sharp tips
     dented.nodes.col(3) *= 3, dented.nodes.col(24 * 6 + 5).head<2>() *= 4;
     for (const Surface& s : surfaces) {
-      const auto fill = meshing::layered_prisms(s, {.layers = 3});
+      const meshing::LayerOptions options{.layers = 3};
+      const auto split = meshing::layered_tetrahedra(s, options);
+      const auto fill = meshing::layered_prisms(s, split, options);
       MESSAGE(fill.prisms.cell_count()
               << " prisms, " << fill.pyramids.cell_count() << " pyramids, " << fill.tets.cell_count()
-              << " tetrahedra, " << fill.report.vanished << " columns vanished");
-      CHECK((fill.pyramids.cell_count() > 0) == (fill.report.vanished > 0));
+              << " tetrahedra, " << split.report.vanished << " columns vanished");
+      CHECK((fill.pyramids.cell_count() > 0) == (split.report.vanished > 0));
       std::set<std::vector<Index>> open;
       int wrong = 0;
       meet(open, fill.prisms, true, wrong), meet(open, fill.pyramids, true, wrong);
@@ -251,7 +253,7 @@ TEST_SUITE("unit") {
         }
       }
       CHECK(inverted == 0);
-      CHECK(volume == doctest::Approx(fill.report.volume).epsilon(1e-12));
+      CHECK(volume == doctest::Approx(split.report.volume).epsilon(1e-12));
     }
   }
 }

@@ -1,18 +1,32 @@
 // SPDX-License-Identifier: MIT
-// layered_prisms(surface): boundary layers kept as the prisms that they grow as, the core of tetrahedra.
-// Where a column has vanished a prism is a pyramid or a tetrahedron: the cells conform.
+// layered_prisms(surface, fill): boundary layers kept as the prisms that they grew as, the core of
+// tetrahedra. Where a column has vanished a prism is a pyramid or a tetrahedron: the cells conform.
 #pragma once
 
 #include "tunica/mesh/wedge.hpp"
-#include "tunica/meshing/boundary_layers.hpp"
+#include "tunica/meshing/layer_assembly.hpp"
+#include "tunica/meshing/layer_options.hpp"
+#include "tunica/meshing/layer_sheet.hpp"
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
 namespace tunica::meshing {
+
+/// What layered_tetrahedra gives.
+///   struct LayeredFill { mesh::TetMesh mesh; mesh::Surface outer; std::vector<Index> end; LayerReport
+///   report; };
+template <class F>
+concept LayerFilling = requires(const F& f) {
+  { f.mesh } -> std::convertible_to<const mesh::TetMesh&>;      // tetrahedra of the layers first
+  { f.outer } -> std::convertible_to<const mesh::Surface&>;     // its border
+  { f.end } -> std::convertible_to<const std::vector<Index>&>;  // of the column above each node
+  { f.report.layer.tetrahedra } -> std::convertible_to<Index>;  // how many are of the layers
+};
 
 /// The three meshes have the same nodes, numbered as in LayeredFill, and together fill the surface.
 struct [[nodiscard]] LayeredPrisms {
@@ -21,15 +35,13 @@ struct [[nodiscard]] LayeredPrisms {
   mesh::TetMesh tets;          // those where two columns have vanished, then the core
   mesh::Surface triangles;     // of the border, with the regions of the surface
   mesh::QuadSurface quads;     // the other faces of the border: sides of the layers in flat ends
-  LayerReport report;          // of the same layers split into tetrahedra
 };
 
-/// Layers and core as of layered_tetrahedra, with the same promises: all corners of all prisms are positive
-/// by exact signs, whichever way they are split.
-[[nodiscard]] inline LayeredPrisms layered_prisms(const mesh::Surface& surface,
-                                                  const LayerOptions& options = {},
-                                                  const FillOptions& core = {}) {
-  const LayeredFill fill = layered_tetrahedra(surface, options, core);
+/// The layers of fill = layered_tetrahedra(surface, options), with the same promises: all corners of all
+/// prisms are positive by exact signs, whichever way they are split.
+template <LayerFilling Fill>
+[[nodiscard]] LayeredPrisms layered_prisms(const mesh::Surface& surface, const Fill& fill,
+                                           const LayerOptions& options = {}) {
   const LayerSheet sheet = layer_sheet(surface, options.regions);
   const auto has_column = [&](Index n) { return fill.end[static_cast<std::size_t>(n)] != n; };
   const auto number = [&](Index n, int level) {
@@ -86,7 +98,6 @@ struct [[nodiscard]] LayeredPrisms {
   result.prisms.nodes = result.pyramids.nodes = result.tets.nodes = fill.mesh.nodes;
   result.triangles.nodes = result.quads.nodes = fill.outer.nodes;
   result.triangles.region_names = result.quads.region_names = surface.region_names;
-  result.report = fill.report;
   return result;
 }
 
