@@ -138,7 +138,8 @@ TEST_SUITE("unit") {
   TEST_CASE("meshing: marching cubes caps noise at every face of the image") {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
       image::Image<int> im;
-      const std::array<Index, 3> n{2 + static_cast<Index>(seed % 3), 7, 2 + static_cast<Index>(seed % 5)};
+      const std::array<Index, 3> n{(seed % 4 == 0 ? 128 : 2) + static_cast<Index>(seed % 3), 7,
+                                   2 + static_cast<Index>(seed % 5)};
       std::uint64_t at = seed << 32;
       for (std::size_t a = 0; a < 3; ++a) {
         double x = 10;
