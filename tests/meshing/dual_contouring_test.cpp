@@ -153,7 +153,7 @@ TEST_SUITE("unit") {
 
   TEST_CASE("meshing: vertices of dual contouring lie within their cells and nowhere twice") {
     for (const bool integers : {false, true}) {
-      const auto im = test::contours::noise(24, integers, 11);
+      const auto im = test::contours::noise(48, integers, 11);
       const auto surface = meshing::dual_contour_image(im, {}, 0).surface;
       std::set<std::array<double, 3>> places;
       Index on_a_side = 0;
@@ -161,7 +161,7 @@ TEST_SUITE("unit") {
         const Vec3 x = surface.nodes.col(v);
         places.insert({x[0], x[1], x[2]});
         for (int a = 0; a < 3; ++a) {
-          const double t = x[a] * 23;
+          const double t = x[a] * 47;
           on_a_side += std::abs(t - std::round(t)) < 0.9e-3;
         }
       }
