@@ -29,6 +29,7 @@ struct Goal {
 [[nodiscard]] std::vector<Goal> dual_goals();
 [[nodiscard]] std::vector<Goal> smoothing_goals();
 [[nodiscard]] std::vector<Goal> filling_goals();
+[[nodiscard]] std::vector<Goal> hex_goals();
 [[nodiscard]] std::vector<Goal> solid_goals();
 [[nodiscard]] std::vector<Goal> fluid_goals();
 
