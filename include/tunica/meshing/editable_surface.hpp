@@ -46,6 +46,7 @@ class EditableSurface {
   [[nodiscard]] const Nodes& nodes(Index t) const { return triangle_[at(t)]; }
   [[nodiscard]] Index facet(Index t) const { return facet_[at(t)]; }
   [[nodiscard]] const std::vector<Index>& ring(Index n) const { return ring_[at(n)]; }
+  void allow_folds(double sharp) { sharp_ = sharp; }
   [[nodiscard]] const LeftOut& left_out() const { return left_out_; }
   [[nodiscard]] double length(Index a, Index b) const { return (x(b) - x(a)).norm(); }
   [[nodiscard]] mesh::Triangle triangle(const Nodes& v) const { return {x(v[0]), x(v[1]), x(v[2])}; }

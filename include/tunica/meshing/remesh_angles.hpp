@@ -43,12 +43,13 @@ void raise(RemeshState<Size>& w, Index n) {
   }
 }
 
-/// Works on the triangles below 25 degrees, the worst first.
+// A triangle whose edges are between 4/5 and 4/3 of the target has 33 degrees or more. What has less than 25
+// needs help, which may take edges a little outside of that range.
+inline constexpr double wanted_angle = 0.44;  // [rad]
+
+/// Works on the triangles below the wanted angle, the worst first.
 template <class Size>
-void repair_angles(RemeshState<Size>& w) {
-  // A triangle whose edges are between 4/5 and 4/3 of the target has 33 degrees or more. What has less than
-  // 25 needs help, which may take edges a little outside of that range.
-  constexpr double wanted = 0.44;  // [rad]
+void repair_angles(RemeshState<Size>& w, double wanted = wanted_angle) {
   // Of the target length, on either side of 4/5 and 4/3: a side that collapses and the longest edge that it
   // may leave.
   constexpr double collapsed = 0.7, longest_made = 1.5;
