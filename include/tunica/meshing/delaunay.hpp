@@ -84,25 +84,25 @@ class Delaunay {
         }
         if (side < 0 || status_[s(t)] == out) border_.push_back(4 * cavity_[i] + f);
       }
-    made_.resize(4 * static_cast<std::size_t>(c_.size()));
     for (const Side side : border_) {  // p takes the place of the node opposite to the face
       Quad q = c_.nodes(side / 4);
       q[s(side % 4)] = p;
       const Side outer = c_.across(side);
       const Index t = c_.add(q);
       c_.link_one(4 * t + side % 4, outer);
-      made_[s(side)] = t;
+      c_.set_mark(side, t);  // of those that vanish: what was made at the face
     }
     for (const Side side : border_) {
       const int f = side % 4;
       for (int g = 0; g < 4; ++g)
-        if (g != f) join(side / 4, f, g, made_[s(side)]);
+        if (g != f) join(side / 4, f, g, made(side));
       const Side outer = c_.across(side);
-      if (outer >= 0) c_.link_one(outer, 4 * made_[s(side)] + f);
+      if (outer >= 0) c_.link_one(outer, 4 * made(side) + f);
     }
+    last_ = made(border_[0]);
     for (const Index t : cavity_) c_.remove(t);
-    last_ = made_[s(border_[0])];
   }
+  [[nodiscard]] Index made(Side side) const { return c_.mark(side / 4, side % 4); }
 
   /// Finds the new neighbour of `fresh` (made at face f of t) across its face g: turn about the
   /// edge opposite to f and g through the cavity until its border is met again.
@@ -126,7 +126,7 @@ class Delaunay {
     }
     // The border face is `leave` of `tet`; in the tetrahedron made there, the edge's other face is
     // the one opposite to the node at `enter`.
-    const Index other = made_[s(4 * tet + leave)];
+    const Index other = made(4 * tet + leave);
     c_.link(4 * fresh + g, 4 * other + enter);
   }
 
@@ -138,7 +138,7 @@ class Delaunay {
   enum : char { in, out };
   TetComplex& c_;
   Index last_ = 0;
-  std::vector<Index> cavity_, made_;
+  std::vector<Index> cavity_;
   std::vector<Side> border_;
   std::vector<char> status_;
 };

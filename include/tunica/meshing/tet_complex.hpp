@@ -230,18 +230,16 @@ class TetComplex {
     Index count = 0;
     for (Index t = 0; t < size(); ++t)
       if (alive(t) && keep(t)) number[at(t)] = count++;
-    std::vector<Tet> kept;
-    kept.reserve(static_cast<std::size_t>(count));
     std::fill(tet_of.begin(), tet_of.end(), -1);
-    for (Index t = 0; t < size(); ++t) {
+    for (Index t = 0; t < size(); ++t) {  // in place: none gets a larger number
       if (number[at(t)] < 0) continue;
       Tet tet = tets_[at(t)];
       for (Side& s : tet.next)
         if (s >= 0) s = number[at(s / 4)] < 0 ? -1 : 4 * number[at(s / 4)] + s % 4;
       for (const Index n : tet.node) tet_of[at(n)] = number[at(t)];
-      kept.push_back(tet);
+      tets_[at(number[at(t)])] = tet;
     }
-    tets_ = std::move(kept);
+    tets_.resize(static_cast<std::size_t>(count));
     free_.clear();
     stamp_.assign(tets_.size(), 0);
     round_ = 0;
