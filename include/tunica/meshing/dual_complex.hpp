@@ -4,7 +4,6 @@
 #pragma once
 
 #include "tunica/core/vec.hpp"
-#include "tunica/meshing/box.hpp"
 #include "tunica/meshing/contour_sheets.hpp"
 #include "tunica/meshing/dual_contouring.hpp"
 #include "tunica/meshing/dual_parts.hpp"
@@ -160,9 +159,7 @@ class DualComplexBuilder {
           if (grid_.inside[node] == 0) continue;
           std::array<Index, 8> hex{};
           for (std::size_t c = 0; c < 8; ++c) {
-            const auto& o = box_corners[c];
-            const auto u = static_cast<std::size_t>(o[0]), v = static_cast<std::size_t>(o[1]),
-                       w = static_cast<std::size_t>(o[2]);
+            const auto& [u, v, w] = hex_offsets[c];
             const std::size_t cell = node - (1 - u) - (1 - v) * stride_[1] - (1 - w) * stride_[2];
             Index& n = number[cell];
             if (n == -1) {

@@ -140,7 +140,7 @@ inline void level(HexComplex& hexes, SurfaceGuide& guide, const HexFillOptions& 
         continue;
       for (const Index n : cell) {
         const auto i = static_cast<std::size_t>(n);
-        if (hexes.nodes[i] != x[i]) hexes.nodes[i] = x[i], again = true;
+        if (vec::distance(hexes.nodes[i], x[i]) > 0) hexes.nodes[i] = x[i], again = true;
       }
     }
   }

@@ -6,6 +6,7 @@
 #include "tunica/mesh/mesh.hpp"
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace tunica::meshing {
@@ -27,5 +28,13 @@ struct HexComplex {
   std::vector<Index> facet;                  // of the faces of the border
   Index lattice_cells = 0;                   // they come first, the layers after them
 };
+
+namespace detail {
+
+/// The corners of Hex8 as offsets along the axes of a grid.
+inline constexpr std::array<std::array<std::size_t, 3>, 8> hex_offsets{
+    {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+
+}  // namespace detail
 
 }  // namespace tunica::meshing

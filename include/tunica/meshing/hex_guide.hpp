@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -36,16 +35,17 @@ class SurfaceGuide {
         facets_(facets),
         walk_(surface, facets.of),
         sites_(std::move(sites)),
-        triangle_(sites_.size(), -1) {
+        loose_(sites_.size(), 0),
+        triangle_(sites_.size(), -1),
+        rims_from_(facets.region.size()) {
     const auto twin = mesh::twins(surface.cells, surface.node_count());
     for (Index h = 0; h < static_cast<Index>(twin.size()); ++h) {
       const Index p = facets.of[at(h / 3)], q = facets.of[at(twin[at(h)] / 3)];
       if (p >= q) continue;
       const auto e = mesh::half_edge(surface.cells, h);
-      rims_[{p, q}].segments.push_back(
-          {vec::column(surface.nodes, e.from), vec::column(surface.nodes, e.to)});
+      rim(p, q).segments.push_back({vec::column(surface.nodes, e.from), vec::column(surface.nodes, e.to)});
     }
-    for (auto& [pair, rim] : rims_) {
+    for (Rim& rim : rims_) {
       std::vector<Box> boxes;
       for (const auto& s : rim.segments) {
         boxes.emplace_back();
@@ -54,7 +54,7 @@ class SurfaceGuide {
       rim.tree = search::Octree(boxes);
     }
     for (HexSite& s : sites_)
-      if (s.rim() && rims_.count({s.facet, s.other}) == 0) s.corner = true;  // the facets meet nowhere
+      if (s.rim() && !rim_of(s)) s.corner = true;  // the facets meet nowhere
   }
 
   [[nodiscard]] const HexSite& site(Index n) const { return sites_[at(n)]; }
@@ -63,17 +63,19 @@ class SurfaceGuide {
   bool release(Index n, double reach) {
     if (sites_[at(n)].inside() || (facets_.planes[at(sites_[at(n)].facet)] && !sites_[at(n)].rim()))
       return false;
-    return loose_.insert_or_assign(n, reach).second;
+    const bool first = !loose(n);
+    loose_[at(n)] = reach;
+    return first;
   }
 
   [[nodiscard]] Vec3 placed(Index n, const Vec3& x) {
     const HexSite& s = sites_[at(n)];
     if (s.inside() || s.corner) return x;
-    if (const auto loose = loose_.find(n); loose != loose_.end()) {
+    if (loose(n)) {
       const Vec3 y = in_planes(n, x);
       const Vec3 foot = bound(n, y), off = vec::minus(y, foot);
       const double far = vec::length(off);
-      return far <= loose->second ? y : vec::along(foot, loose->second / far, off);
+      return far <= loose_[at(n)] ? y : vec::along(foot, loose_[at(n)] / far, off);
     }
     return bound(n, x);
   }
@@ -81,7 +83,7 @@ class SurfaceGuide {
   /// Where the node belongs.
   [[nodiscard]] Vec3 bound(Index n, const Vec3& x) {
     const HexSite& s = sites_[at(n)];
-    if (s.rim()) return rims_.at({s.facet, s.other}).nearest(x);
+    if (s.rim()) return rim_of(s)->nearest(x);
     if (const auto& plane = facets_.planes[at(s.facet)]) return plane->projected(x);
     Index& t = triangle_[at(n)];
     const SurfacePoint p = t < 0 ? walk_.nearest(x, s.facet) : walk_.slide(t, x);
@@ -91,7 +93,7 @@ class SurfaceGuide {
 
   [[nodiscard]] Vec3 way(Index n, const Vec3& d) const {
     const HexSite& s = sites_[at(n)];
-    if (s.inside() || loose_.count(n) > 0) return d;
+    if (s.inside() || loose(n)) return d;
     if (s.corner) return {0, 0, 0};
     if (s.rim()) return d;  // placed() brings it back
     const Vec3 normal = outward(n);
@@ -109,7 +111,7 @@ class SurfaceGuide {
   [[nodiscard]] Vec3 lack(Index n, const Vec3& x) const {
     const HexSite& s = sites_[at(n)];
     if (s.corner) return {0, 0, 0};
-    if (s.rim()) return vec::minus(rims_.at({s.facet, s.other}).nearest(x), x);
+    if (s.rim()) return vec::minus(rim_of(s)->nearest(x), x);
     if (const auto& plane = facets_.planes[at(s.facet)])
       return vec::scaled(-plane->distance(x), plane->normal);
     return vec::minus(walk_.slide(triangle_[at(n)], x).point, x);
@@ -131,7 +133,7 @@ class SurfaceGuide {
   }
 
   [[nodiscard]] bool flat(Index facet) const { return facets_.planes[at(facet)].has_value(); }
-  [[nodiscard]] bool loose(Index n) const { return loose_.count(n) > 0; }
+  [[nodiscard]] bool loose(Index n) const { return loose_[at(n)] > 0; }
   [[nodiscard]] const SurfaceWalk& walk() const { return walk_; }
 
  private:
@@ -146,6 +148,7 @@ class SurfaceGuide {
     }
   };
   struct Rim {
+    Index other;  // the facet of the higher number
     std::vector<Segment> segments;
     search::Octree tree;
     [[nodiscard]] Vec3 nearest(const Vec3& x) const {
@@ -155,13 +158,27 @@ class SurfaceGuide {
     }
   };
 
+  [[nodiscard]] Rim& rim(Index facet, Index other) {
+    for (const Index r : rims_from_[at(facet)])
+      if (rims_[at(r)].other == other) return rims_[at(r)];
+    rims_from_[at(facet)].push_back(static_cast<Index>(rims_.size()));
+    rims_.push_back({other, {}, {}});
+    return rims_.back();
+  }
+  [[nodiscard]] const Rim* rim_of(const HexSite& s) const {
+    for (const Index r : rims_from_[at(s.facet)])
+      if (rims_[at(r)].other == s.other) return &rims_[at(r)];
+    return nullptr;
+  }
+
   const mesh::Surface& surface_;
   const Facets& facets_;
   SurfaceWalk walk_;
   std::vector<HexSite> sites_;
-  std::map<Index, double> loose_;  // nodes that may leave their places, and how far
-  std::vector<Index> triangle_;    // where a node of a curved facet is
-  std::map<std::pair<Index, Index>, Rim> rims_;
+  std::vector<double> loose_;    // how far a node may leave its place
+  std::vector<Index> triangle_;  // where a node of a curved facet is
+  std::vector<Rim> rims_;
+  std::vector<std::vector<Index>> rims_from_;  // of each facet, to those of higher numbers
 };
 
 }  // namespace tunica::meshing

@@ -17,7 +17,7 @@ namespace tunica::meshing::detail {
 struct HexPointTable {
   std::array<std::array<std::array<double, 8>, 3>, 27> by{};
 
-  constexpr HexPointTable() {
+  HexPointTable() {
     constexpr int side[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                 {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     for (std::size_t p = 0; p < 27; ++p) {
@@ -33,7 +33,7 @@ struct HexPointTable {
     }
   }
 };
-inline constexpr HexPointTable hex_points{};
+inline const HexPointTable hex_points{};
 inline constexpr std::size_t hex_centre = 13;
 
 [[nodiscard]] constexpr bool is_hex_corner(std::size_t p) {
