@@ -37,4 +37,18 @@ set output "docs/figures/thick_tube.svg"
 set ylabel "error of the inner stretch [-]"
 rows = "bench/results/thick_tube.csv"
 plot rows using 6:5 with linespoints pt 7 lw 2 title "Hex8, three-field (Q1-P0-J0)"
+
+set output "docs/figures/tetrahedra.svg"
+unset logscale y
+set format y "%g"
+set ylabel "smallest dihedral angle [degrees]"
+set yrange [0:25]
+rows = "bench/results/tetrahedra.csv"
+by(method) = sprintf('< grep "^bifurcation,%s," %s', method, rows)
+plot by("ours") using 8:5 with linespoints pt 7 lw 2 title "tunica", \
+     by("ours 1.5") using 8:5 with linespoints pt 5 lw 2 title "tunica, inner edges x 1.5", \
+     by("tetgen") using 8:5 with linespoints pt 6 lw 2 title "TetGen -pYq1.4", \
+     by("gmsh") using 8:5 with linespoints pt 8 lw 2 title "Gmsh Delaunay, optimised", \
+     by("hxt") using 8:5 with linespoints pt 4 lw 2 title "Gmsh HXT, optimised", \
+     by("netgen") using 8:5 with linespoints pt 10 lw 2 title "Netgen, optimised"
 PLOT
