@@ -18,6 +18,35 @@ inline std::atomic<int>& thread_count() {
   return n;
 }
 
+namespace detail {
+
+/// Calls work(context, c) for 0 <= c < count on that many threads. The first exception is rethrown.
+inline void run_team(std::ptrdiff_t threads, std::ptrdiff_t count, void (*work)(const void*, std::ptrdiff_t),
+                     const void* context) {
+  std::atomic<std::ptrdiff_t> next{0};
+  std::exception_ptr failure;
+  std::mutex guard;
+  const auto run = [&] {
+    for (std::ptrdiff_t c; (c = next++) < count;) {
+      try {
+        work(context, c);
+      } catch (...) {
+        const std::lock_guard lock(guard);
+        if (!failure) failure = std::current_exception();
+        next = count;
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> team;
+    for (std::ptrdiff_t t = 1; t < threads; ++t) team.emplace_back(run);
+    run();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace detail
+
 /// Calls body(begin, end) for the chunks of [0, n); each chunk is a unit of work for one thread.
 /// body must write only what belongs to its chunk; then the result has the same bits on any
 /// number of threads. The first exception of a chunk is rethrown.
@@ -30,26 +59,9 @@ void parallel_chunks(std::ptrdiff_t n, std::ptrdiff_t chunk, Body&& body) {
     for (std::ptrdiff_t c = 0; c < chunks; ++c) run(c);
     return;
   }
-  std::atomic<std::ptrdiff_t> next{0};
-  std::exception_ptr failure;
-  std::mutex guard;
-  const auto work = [&] {
-    for (std::ptrdiff_t c; (c = next++) < chunks;) {
-      try {
-        run(c);
-      } catch (...) {
-        const std::lock_guard lock(guard);
-        if (!failure) failure = std::current_exception();
-        next = chunks;
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> team;
-    for (std::ptrdiff_t t = 1; t < threads; ++t) team.emplace_back(work);
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
+  detail::run_team(
+      threads, chunks,
+      [](const void* context, std::ptrdiff_t c) { (*static_cast<const decltype(run)*>(context))(c); }, &run);
 }
 
 /// Sum of body(begin, end) over fixed chunks, added in the order of the chunks.

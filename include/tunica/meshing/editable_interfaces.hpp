@@ -4,7 +4,7 @@
 #pragma once
 
 #include "tunica/meshing/interface_rings.hpp"
-#include "tunica/meshing/intersections.hpp"
+#include "tunica/meshing/triangles_cross.hpp"
 
 #include <algorithm>
 #include <array>
@@ -169,10 +169,10 @@ class EditableInterfaces : public InterfaceRings {
     for (const Made& m : made) {
       const mesh::Triangle f = triangle(m.nodes);
       const auto n = std::find_if(before.normals.begin(), before.normals.end(),
-                                  [&](const auto& p) { return p.first == m.sides; });
+                                  [&](const SideNormal& p) { return p.sides == m.sides; });
       const Vec3 area = f.area_vector();
       if (least_cosine > any_turn &&
-          !(vec::dot(area, n->second) > least_cosine * vec::length(area) * vec::length(n->second)))
+          !(vec::dot(area, n->area) > least_cosine * vec::length(area) * vec::length(n->area)))
         return false;
       if (!(f.smallest_angle() >= least_angle)) return false;
     }

@@ -5,8 +5,8 @@
 
 #include "tunica/meshing/facets.hpp"
 #include "tunica/meshing/folds.hpp"
-#include "tunica/meshing/intersections.hpp"
 #include "tunica/meshing/triangle_grid.hpp"
+#include "tunica/meshing/triangles_cross.hpp"
 
 #include <algorithm>
 #include <array>
@@ -190,22 +190,25 @@ class EditableSurface {
 
   [[nodiscard]] static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-  using FacetNormals = std::vector<std::pair<Index, Vec3>>;
+  struct FacetNormal {
+    Index facet;
+    Vec3 area;
+  };
 
   /// The triangles that an edit replaces: the mean normals of their facets, and where a node that moves was.
   struct Before {
-    FacetNormals normals;
+    std::vector<FacetNormal> normals;
     Index node = -1;
     Vec3 place{0, 0, 0};
   };
 
-  [[nodiscard]] FacetNormals facet_normals(const std::vector<Index>& triangles) const {
-    FacetNormals normals;
+  [[nodiscard]] std::vector<FacetNormal> facet_normals(const std::vector<Index>& triangles) const {
+    std::vector<FacetNormal> normals;
     for (const Index t : triangles) {
-      auto it =
-          std::find_if(normals.begin(), normals.end(), [&](const auto& n) { return n.first == facet(t); });
-      if (it == normals.end()) it = normals.insert(it, {facet(t), Vec3::Zero()});
-      it->second += triangle(t).area_vector();
+      std::size_t i = 0;
+      while (i < normals.size() && normals[i].facet != facet(t)) ++i;
+      if (i == normals.size()) normals.push_back({facet(t), Vec3::Zero()});
+      normals[i].area += triangle(t).area_vector();
     }
     return normals;
   }
@@ -218,9 +221,9 @@ class EditableSurface {
     for (std::size_t i = 0; i < made.size(); ++i) {
       const Index f = made_facet.empty() ? facet(gone[i * gone.size() / made.size()]) : made_facet[i];
       const auto n = std::find_if(before.normals.begin(), before.normals.end(),
-                                  [&](const auto& p) { return p.first == f; });
+                                  [&](const FacetNormal& p) { return p.facet == f; });
       const Vec3 a = triangle(made[i]).area_vector();
-      if (!(a.dot(n->second) > least_cosine * a.norm() * n->second.norm())) {
+      if (!(a.dot(n->area) > least_cosine * a.norm() * n->area.norm())) {
         ++left_out_.folds;
         return false;
       }

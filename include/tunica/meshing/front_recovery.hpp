@@ -13,7 +13,7 @@
 #include "tunica/meshing/front_inside.hpp"
 #include "tunica/meshing/front_release.hpp"
 #include "tunica/meshing/front_surface.hpp"
-#include "tunica/meshing/intersections.hpp"
+#include "tunica/meshing/triangles_cross.hpp"
 #include "tunica/search/octree.hpp"
 
 #include <algorithm>

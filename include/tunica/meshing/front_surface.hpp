@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <set>
@@ -41,7 +42,8 @@ class FrontSurface {
   FrontSurface(const Points<3>& points, const Connectivity<3>& faces)
       : nodes(static_cast<Index>(points.cols())) {
     if (faces.cols() == 0) throw MeshError("the surface has no triangles");
-    if (!points.allFinite()) throw MeshError("a node of the surface is not finite");
+    for (Eigen::Index i = 0; i < points.size(); ++i)
+      if (!std::isfinite(points.data()[i])) throw MeshError("a node of the surface is not finite");
     triangles.resize(at(faces.cols()));
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       for (int i = 0; i < 3; ++i) {

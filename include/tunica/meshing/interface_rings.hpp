@@ -96,10 +96,15 @@ class InterfaceRings {
     Nodes nodes;
     Sides sides;
   };
+  /// Sum of the area vectors of triangles between two regions.
+  struct SideNormal {
+    Sides sides;
+    Vec3 area;
+  };
   /// The triangles that an edit replaces: the sum of their normals by sides, their smallest angle, and where
   /// a node that moves was.
   struct Before {
-    std::vector<std::pair<Sides, Vec3>> normals;
+    std::vector<SideNormal> normals;
     double angle = std::numeric_limits<double>::infinity();
     Index node = -1;
     Vec3 place{0, 0, 0};
@@ -148,9 +153,10 @@ class InterfaceRings {
     const double v = sign * mesh::cone_volume(triangle(n), origin);
     for (std::size_t k = 0; k < 2; ++k) {
       if (sides[k] < 0) continue;
-      auto it = std::find_if(gains.begin(), gains.end(), [&](const auto& g) { return g.first == sides[k]; });
-      if (it == gains.end()) it = gains.insert(it, {sides[k], 0.0});
-      it->second += k == 0 ? v : -v;
+      std::size_t i = 0;
+      while (i < gains.size() && gains[i].first != sides[k]) ++i;
+      if (i == gains.size()) gains.emplace_back(sides[k], 0.0);
+      gains[i].second += k == 0 ? v : -v;
     }
   }
   [[nodiscard]] Gains gains(std::span<const Made> made, const Vec3& origin) const {
@@ -165,10 +171,10 @@ class InterfaceRings {
     for (const Index t : gone) {
       const mesh::Triangle f = triangle(nodes(t));
       b.angle = std::min(b.angle, f.smallest_angle());
-      auto it = std::find_if(b.normals.begin(), b.normals.end(),
-                             [&](const auto& n) { return n.first == s_.sides[at(t)]; });
-      if (it == b.normals.end()) it = b.normals.insert(it, {s_.sides[at(t)], Vec3(0, 0, 0)});
-      it->second = vec::plus(it->second, f.area_vector());
+      std::size_t i = 0;
+      while (i < b.normals.size() && b.normals[i].sides != s_.sides[at(t)]) ++i;
+      if (i == b.normals.size()) b.normals.push_back({s_.sides[at(t)], Vec3(0, 0, 0)});
+      b.normals[i].area = vec::plus(b.normals[i].area, f.area_vector());
     }
     return b;
   }

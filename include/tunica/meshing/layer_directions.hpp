@@ -41,9 +41,14 @@ namespace detail {
   return way;
 }
 
+struct FirstDirection {
+  Vec3 way;
+  double cosine;
+};
+
 /// The best direction at a node: the most normal one, or within a plane that of the normals' shadows if it
 /// sees more.
-[[nodiscard]] inline std::pair<Vec3, double> first_direction(const LayerSheet& sheet, Index n) {
+[[nodiscard]] inline FirstDirection first_direction(const LayerSheet& sheet, Index n) {
   std::vector<Vec3> normals, shadows;
   for (const Index t : sheet.around[n]) normals.push_back(sheet.inward[static_cast<std::size_t>(t)]);
   const Vec3 way = allowed(sheet, n, most_normal(normals).direction);
@@ -55,7 +60,7 @@ namespace detail {
   }
   const Vec3 other = allowed(sheet, n, most_normal(shadows).direction);
   const double seen = least_cosine(sheet, n, other);
-  return seen > cosine ? std::pair{other, seen} : std::pair{way, cosine};
+  return seen > cosine ? FirstDirection{other, seen} : FirstDirection{way, cosine};
 }
 
 /// Weights of a node's neighbours that give the value of a linear field at the node by least squares: means

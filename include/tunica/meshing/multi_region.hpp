@@ -86,10 +86,12 @@ inline void measure(const MultiRegionResult& m, const std::vector<Index>& region
   r.smallest_angle = thin * 180 / std::numbers::pi;
 }
 
-/// Fills every region but the outside and joins the fillings over the nodes of the interfaces.
-[[nodiscard]] inline MultiRegionResult fill_regions(Interfaces interfaces, Materials materials, double edge,
-                                                    const image::LabelRegions& regions,
-                                                    const MultiRegionOptions& options) {
+/// Fills every region but the outside by fill(surface) -> FillResult, which keeps the surface, and joins the
+/// fillings over the nodes of the interfaces.
+template <class Fill>
+[[nodiscard]] MultiRegionResult fill_regions(Interfaces interfaces, Materials materials, double edge,
+                                             const image::LabelRegions& regions,
+                                             const MultiRegionOptions& options, const Fill& fill) {
   MultiRegionResult result;
   MultiRegionReport& report = result.report;
   report.materials = std::move(materials.list);
@@ -104,7 +106,7 @@ inline void measure(const MultiRegionResult& m, const std::vector<Index>& region
     const auto r = static_cast<std::size_t>(first);
     if (materials.of[r] < 0) return;
     try {
-      fillings[r] = tetrahedra(surfaces[r].surface, options.fill);
+      fillings[r] = fill(surfaces[r].surface);
     } catch (const MeshError& error) {
       failures[r] = error.what();
     }
@@ -180,7 +182,8 @@ template <std::integral T>
   }
   for (;;) {
     try {
-      auto result = detail::fill_regions(std::move(stages.back()), materials, edge, regions, options);
+      const auto fill = [&](const mesh::Surface& s) { return tetrahedra(s, options.fill); };
+      auto result = detail::fill_regions(std::move(stages.back()), materials, edge, regions, options, fill);
       result.report.held = relaxed.held;
       return result;
     } catch (const MeshError&) {

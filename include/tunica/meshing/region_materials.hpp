@@ -10,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -77,18 +76,21 @@ struct Materials {
 [[nodiscard]] inline Materials materials_of(const image::LabelRegions& regions,
                                             const std::vector<LabelName>& names) {
   Materials m;
-  std::map<std::int64_t, Index> number;
+  std::vector<std::int64_t> labels;  // ascending
+  const auto place_of = [&labels](std::int64_t label) {
+    return std::lower_bound(labels.begin(), labels.end(), label);
+  };
   for (const auto& r : regions.regions)
-    if (r.label != 0) number[r.label] = 0;
-  for (auto& [label, index] : number) {
-    index = static_cast<Index>(m.list.size());
+    if (const auto at = place_of(r.label); r.label != 0 && (at == labels.end() || *at != r.label))
+      labels.insert(at, r.label);
+  for (const std::int64_t label : labels) {
     MaterialReport one{.label = label, .name = "material " + std::to_string(label)};
     for (const LabelName& n : names)
       if (n.label == label) one.name = n.name;
     m.list.push_back(one);
   }
   for (const auto& r : regions.regions) {
-    m.of.push_back(r.label == 0 ? -1 : number[r.label]);
+    m.of.push_back(r.label == 0 ? -1 : static_cast<Index>(place_of(r.label) - labels.begin()));
     if (r.label == 0) continue;
     MaterialReport& one = m.list[static_cast<std::size_t>(m.of.back())];
     ++one.regions;
@@ -103,7 +105,8 @@ struct Materials {
     const Interfaces& s, const std::vector<MaterialReport>& materials, const std::vector<Index>& of) {
   constexpr std::array<const char*, 6> border{"x0", "x1", "y0", "y1", "z0", "z1"};
   const auto count = static_cast<Index>(materials.size());
-  std::map<std::pair<Index, Index>, std::vector<std::array<Index, 3>>> faces;
+  const Index kinds = count + 1 + static_cast<Index>(border.size());  // materials, outside, borders
+  std::vector<std::vector<std::array<Index, 3>>> faces(static_cast<std::size_t>(kinds * kinds));
   for (std::size_t t = 0; t < s.faces.size(); ++t) {
     auto f = s.faces[t];
     Index a = of[static_cast<std::size_t>(s.sides[t][0])], b = count;
@@ -114,16 +117,18 @@ struct Materials {
     if (a < 0) a = count;  // the outside comes after the materials
     if (b < 0) b = count;
     if (b < a) std::swap(a, b), std::swap(f[1], f[2]);
-    faces[{a, b}].push_back(f);
+    faces[static_cast<std::size_t>(a * kinds + b)].push_back(f);
   }
   std::vector<mesh::Patch<mesh::Tri3>> patches;
-  for (const auto& [pair, list] : faces) {
+  for (Index pair = 0; pair < kinds * kinds; ++pair) {
+    const auto& list = faces[static_cast<std::size_t>(pair)];
+    if (list.empty()) continue;
     const auto name = [&](Index i) -> std::string {
       if (i < count) return materials[static_cast<std::size_t>(i)].name;
       if (i == count) return "outside";
       return std::string("border ") + border[static_cast<std::size_t>(i - count - 1)];
     };
-    mesh::Patch<mesh::Tri3> p{name(pair.first) + "|" + name(pair.second), {}};
+    mesh::Patch<mesh::Tri3> p{name(pair / kinds) + "|" + name(pair % kinds), {}};
     p.faces.resize(3, static_cast<Eigen::Index>(list.size()));
     for (std::size_t t = 0; t < list.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i)

@@ -16,8 +16,10 @@ class TriangleGrid {
  public:
   TriangleGrid(const Box& box, double cell) : lo_(box.lo) {
     constexpr double most_cells = 1 << 22;
-    const Vec3 size = (box.hi - box.lo).cwiseMax(cell);
-    while ((size / cell).array().ceil().prod() > most_cells) cell *= 1.26;
+    Vec3 size(0, 0, 0);
+    for (int a = 0; a < 3; ++a) size[a] = std::max(box.hi[a] - box.lo[a], cell);
+    while (std::ceil(size[0] / cell) * std::ceil(size[1] / cell) * std::ceil(size[2] / cell) > most_cells)
+      cell *= 1.26;
     cell_ = cell;
     for (std::size_t a = 0; a < 3; ++a)
       n_[a] = static_cast<Index>(std::ceil(size[static_cast<Eigen::Index>(a)] / cell)) + 1;
