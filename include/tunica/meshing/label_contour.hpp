@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The interfaces of a label image: Kuhn's split of the grid into tetrahedra [KUHN60], in each of them the faces
-// dual to the edges whose ends differ [NIELSON97]. Every region's boundary is a closed manifold, for any labels.
+// The interfaces of a label image: Kuhn's split of the grid into tetrahedra [KUHN60], in each of them the
+// faces dual to the edges whose ends differ [NIELSON97]. Every region's boundary is a closed manifold, for
+// any labels.
 #pragma once
 
 #include "tunica/image/labels.hpp"

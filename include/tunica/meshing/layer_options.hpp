@@ -19,7 +19,7 @@ struct LayerOptions {
   int smoothing = 15;                  // sweeps over the directions
   double good = 0.15;       // least volume of a layer's tetrahedra over those of a right prism on its base
   double least_angle = 15;  // [degrees] of triangles between layers and core, or half of that on the wall
-  double least = 0.1;      // height of all layers over the local edge below which a column vanishes
+  double least = 0.1;       // height of all layers over the local edge below which a column vanishes
 };
 
 }  // namespace tunica::meshing
