@@ -220,6 +220,14 @@ TEST_SUITE("hard") {
     };
     fill("noise", meshing::marching_cubes(test::noise_volume(40), 0.0).surface);
     fill("noise of integers", meshing::marching_cubes(test::integer_noise_volume(40), 0.0).surface);
+    for (const bool integers : {false, true}) {
+      auto s = meshing::dual_contour_image(integers ? test::integer_noise_volume(40) : test::noise_volume(40),
+                                           {}, 0.0)
+                   .surface;
+      CHECK(meshing::untangle(s).crossings_after == 0);
+      CHECK(test::nested_outward(s));
+      fill(integers ? "noise of integers, dual contouring" : "noise, dual contouring", s);
+    }
   }
 
   TEST_CASE("meshing: tetrahedra end as they must on fifty surfaces of the soak") {

@@ -5,6 +5,7 @@
 
 #include "tunica/meshing/flat_regions.hpp"
 #include "tunica/meshing/intersections.hpp"
+#include "tunica/meshing/repair_orient.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -14,9 +15,11 @@ namespace tunica::meshing {
 struct [[nodiscard]] UntangleReport {
   std::size_t crossings_before = 0, crossings_after = 0;  // pairs of triangles
   Index moved = 0;                                        // nodes
+  Index turned = 0;  // components that came out inside out, or beyond another one, and are turned
 };
 
-/// Flat regions and their rims stay in their planes. What is still tangled after `most_rounds` is told.
+/// Flat regions and their rims stay in their planes. What is still tangled after `most_rounds` is told. A
+/// component that came out inside out is turned: outward, within an odd number of others inward.
 inline UntangleReport untangle(mesh::Surface& s, int most_rounds = 60) {
   UntangleReport report;
   auto pairs = self_intersections(s);
@@ -56,6 +59,11 @@ inline UntangleReport untangle(mesh::Surface& s, int most_rounds = 60) {
   }
   for (const char c : touched) report.moved += c;
   report.crossings_after = pairs.size();
+  if (pairs.empty()) {
+    RepairReport repair;
+    detail::face_outward(s, repair);
+    report.turned = repair.parts_turned.count;
+  }
   return report;
 }
 
