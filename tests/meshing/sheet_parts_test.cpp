@@ -186,7 +186,7 @@ TEST_SUITE("unit") {
         for (int a = 0; a < 3; ++a) wall.nodes(a, n) += uniform(random);
     const Ground ground;
     const Rims none;
-    detail::QuadSmoother<Ground> smoother(wall, ground, none, 1.0);
+    meshing::detail::QuadSmoother<Ground> smoother(wall, ground, none, 1.0);
     CHECK(wall.nodes.row(2).cwiseAbs().maxCoeff() == 0);
     for (const Index n : border) smoother.pin(n, even.col(n));
     const Index middle = 3 + 7 * 3;
@@ -257,13 +257,13 @@ TEST_SUITE("unit") {
     CHECK(grid.point(inner) == Vec3(1, 4, 1));
     CHECK(grid.strides() == std::array<std::size_t, 3>{1, 4, 16});
     std::vector<std::size_t> edges;
-    detail::for_crossed_edges(grid,
-                              [&](std::size_t edge, std::size_t node, std::size_t other, std::size_t a) {
-                                CHECK(edge == 3 * node + a);
-                                CHECK(other == node + grid.strides()[a]);
-                                CHECK((node == inner || other == inner));
-                                edges.push_back(edge);
-                              });
+    meshing::detail::for_crossed_edges(
+        grid, [&](std::size_t edge, std::size_t node, std::size_t other, std::size_t a) {
+          CHECK(edge == 3 * node + a);
+          CHECK(other == node + grid.strides()[a]);
+          CHECK((node == inner || other == inner));
+          edges.push_back(edge);
+        });
     CHECK(edges == std::vector<std::size_t>{3 * (inner - 16) + 2, 3 * (inner - 4) + 1, 3 * (inner - 1),
                                             3 * inner, 3 * inner + 1, 3 * inner + 2});
   }
@@ -277,7 +277,7 @@ TEST_SUITE("unit") {
     const SignBits bits(im, {}, 0.5);
     const CutNumbers cuts(bits, size[1], size[2]);
     CHECK(cuts.count() == 0);
-    const detail::MarchingCaps caps(bits, cuts, size);
+    const meshing::detail::MarchingCaps caps(bits, cuts, size);
     CHECK(caps.nodes().size() == 60 - 2 * 1 * 3);
     mesh::Surface box;
     box.nodes.resize(3, static_cast<Index>(caps.nodes().size()));
@@ -331,7 +331,7 @@ TEST_SUITE("unit") {
     const ExtrudeOptions<double> options{.thickness = thickness};  // outlives the fields
     for (const double slope : {0.0, -1.0, -0.5}) {                 // flat, and ridges
       const auto sheet = roof(4, slope);
-      detail::ExtrudeField field(sheet, {}, options);
+      meshing::detail::ExtrudeField field(sheet, {}, options);
       field.solve();
       const double along = std::sqrt(1 + slope * slope);
       for (Index n = 0; n < sheet.node_count(); ++n) {
@@ -354,7 +354,7 @@ TEST_SUITE("unit") {
     SheetRim rim{"end", Vec3(0, -1, 0.3).normalized(), {}};
     for (Index i = 0; i < 9; ++i) rim.loop.push_back(i);
     const std::vector<SheetRim> rims{rim};
-    detail::ExtrudeField field(sheet, rims, options);
+    meshing::detail::ExtrudeField field(sheet, rims, options);
     field.solve();
     for (const Index n : rim.loop) {
       CHECK(std::abs(field.offset(n).dot(rim.normal)) < 1e-14);
@@ -373,8 +373,8 @@ TEST_SUITE("unit") {
     for (std::size_t n = 0; n < count; ++n)
       if (const double side = sheet.nodes(0, static_cast<Index>(n)); side != 0)
         offset[n] = Vec3(side > 0 ? -2 : 2, 0, 1).normalized();
-    const detail::Columns columns{sheet, around, neighbours, thickness, planes, 1, 0.3, 80};
-    detail::ColumnEnds ends(columns, offset);
+    const meshing::detail::Columns columns{sheet, around, neighbours, thickness, planes, 1, 0.3, 80};
+    meshing::detail::ColumnEnds ends(columns, offset);
     const Index bottom = 4 + 9 * 2;
     CHECK(ends.share(bottom) == doctest::Approx(1 / std::sqrt(5.0)));  // height 1 above two flanks of slope 2
     CHECK(ends.share(bottom + 1) == 1);                                // 1.19 from the other flank

@@ -16,22 +16,22 @@
 #include <vector>
 
 using namespace tunica;
-namespace detail = meshing::detail;
+namespace parts = meshing::detail;
 
 namespace {
 
-detail::SmoothGraph graph_of(const mesh::Surface& s) {
-  return detail::smooth_graph(
-      s.cells, std::vector<detail::Visit>(static_cast<std::size_t>(s.node_count()), detail::Visit::ring));
+parts::SmoothGraph graph_of(const mesh::Surface& s) {
+  return parts::smooth_graph(
+      s.cells, std::vector<parts::Visit>(static_cast<std::size_t>(s.node_count()), parts::Visit::ring));
 }
 
-std::vector<detail::Place> placed(const detail::SmoothGraph& g, const Points<3>& nodes) {
-  std::vector<detail::Place> places;
+std::vector<parts::Place> placed(const parts::SmoothGraph& g, const Points<3>& nodes) {
+  std::vector<parts::Place> places;
   for (const Index n : g.node) places.push_back({nodes(0, n), nodes(1, n), nodes(2, n), 0});
   return places;
 }
 
-Points<3> nodes_of(const detail::SmoothGraph& g, const std::vector<detail::Place>& places) {
+Points<3> nodes_of(const parts::SmoothGraph& g, const std::vector<parts::Place>& places) {
   Points<3> nodes(3, static_cast<Eigen::Index>(places.size()));
   for (std::size_t i = 0; i < places.size(); ++i)
     nodes.col(g.node[i]) = Vec3(places[i].x, places[i].y, places[i].z);
@@ -58,13 +58,13 @@ TEST_SUITE("unit") {
       // the rings lie in packs; what is left over, one by one
       for (std::uint32_t slot = group.first; slot < group.first + group.count && group.valence > 0;) {
         const std::uint32_t left = group.first + group.count - slot;
-        const std::uint32_t width = left >= detail::widest ? detail::widest : 1;
+        const std::uint32_t width = left >= parts::widest ? parts::widest : 1;
         for (std::uint32_t lane = 0; lane < width; ++lane) {
           std::set<Index> ring;
           for (std::uint32_t i = 0; i < group.valence; ++i) {
-            const Index a = g.node[g.ring_slots[at + i * width + lane] / detail::lane_stride];
+            const Index a = g.node[g.ring_slots[at + i * width + lane] / parts::lane_stride];
             const Index b =
-                g.node[g.ring_slots[at + (i + 1) % group.valence * width + lane] / detail::lane_stride];
+                g.node[g.ring_slots[at + (i + 1) % group.valence * width + lane] / parts::lane_stride];
             ring.insert(a);
             CHECK(std::count(near[a].begin(), near[a].end(), b) == 1);
           }
@@ -87,14 +87,14 @@ TEST_SUITE("unit") {
     mesh::Surface now = s;
     double volume = mesh::enclosed_volume(s);
     for (const auto& group : g.groups) {
-      detail::Tally tally;
+      parts::Tally tally;
       const auto was = places;
-      detail::visit_group<detail::Pass::note>(places.data(), before.data(), normal.data(), g, group,
-                                              {.factor = 0.5, .offset = 1e-3}, tally);
+      parts::visit_group<parts::Pass::note>(places.data(), before.data(), normal.data(), g, group,
+                                            {.factor = 0.5, .offset = 1e-3}, tally);
       now.nodes = nodes_of(g, places);
       const double next = mesh::enclosed_volume(now);
       CHECK(next - volume == doctest::Approx(tally.volume / 6).epsilon(1e-9).scale(1e-3));
-      const double offset = detail::offset_group(places.data(), normal.data(), group, 0.01);
+      const double offset = parts::offset_group(places.data(), normal.data(), group, 0.01);
       CHECK(offset == doctest::Approx(0.01 * tally.slope));
       now.nodes = nodes_of(g, places);
       volume = mesh::enclosed_volume(now);
@@ -112,7 +112,7 @@ TEST_SUITE("unit") {
         meshing::marching_cubes(test::sampled<float>(24, [](const Vec3& x) { return -test::sphere(x); }), 0)
             .surface;
     const auto g = graph_of(s);
-    detail::TurnWatch watch(s.cells, g.slot);
+    parts::TurnWatch watch(s.cells, g.slot);
     auto places = placed(g, s.nodes);
     std::uint64_t seed = 1;
     Index turned = 0;
