@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: MIT
 # cmake -D rows=goals.csv -D page=benchmarks.md -P report.cmake: the page of benchmarks from the goals' rows.
 cmake_minimum_required(VERSION 3.25)
-file(STRINGS ${rows} lines)
+# Semicolons, which part the elements of CMake's lists, stand as a bell character until the page is written.
+string(ASCII 7 bell)
+file(READ ${rows} text)
+string(REPLACE ";" "${bell}" text "${text}")
+string(REGEX MATCHALL "[^\n]+" lines "${text}")
 list(POP_FRONT lines)
 set(table "")
 set(origin "")
@@ -12,6 +16,7 @@ foreach(line IN LISTS lines)
   string(APPEND table "| ${row} |\n")
   list(GET cells 5 6 origin)
 endforeach()
+string(REPLACE "${bell}" ";" table "${table}")
 list(JOIN origin "`, commit `" origin)
 file(READ ${CMAKE_CURRENT_LIST_DIR}/benchmarks.md.in text)
 string(REPLACE "@table@" "${table}" text "${text}")

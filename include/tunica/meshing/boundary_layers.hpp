@@ -201,7 +201,7 @@ template <class FillCore>
   TUNICA_EXPECT(options.layers > 0, "boundary layers are at least one");
   TUNICA_EXPECT(options.growth > 0 && options.last > 0 && options.first >= 0,
                 "layers have a positive height");
-  FrontSurface{surface.nodes, surface.cells};  // refuses what is not closed
+  [[maybe_unused]] const FrontSurface closed(surface.nodes, surface.cells);  // or else refused
   require_no_crossing(surface);
   LayeredFill result;
   LayerSheet sheet = layer_sheet(surface, options.regions);

@@ -31,7 +31,10 @@ struct GridCut {
 /// An edge between two inside nodes on either side of a plane.
 struct GridEdge {
   std::size_t behind, front;  // node numbers
-  friend auto operator<=>(const GridEdge&, const GridEdge&) = default;
+  friend bool operator==(const GridEdge&, const GridEdge&) = default;
+  friend bool operator<(const GridEdge& a, const GridEdge& b) {
+    return a.behind != b.behind ? a.behind < b.behind : a.front < b.front;
+  }
 };
 
 /// Edges that hang together where a plane crosses the inside.

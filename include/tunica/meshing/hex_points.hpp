@@ -21,8 +21,9 @@ struct HexPointTable {
     constexpr int side[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                 {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     for (std::size_t p = 0; p < 27; ++p) {
-      const std::array<double, 3> t{static_cast<double>(p % 3) / 2, static_cast<double>(p / 3 % 3) / 2,
-                                    static_cast<double>(p / 9) / 2};
+      const std::array<std::size_t, 3> at{p % 3, p / 3 % 3, p / 9};
+      std::array<double, 3> t{};
+      for (std::size_t a = 0; a < 3; ++a) t[a] = 0.5 * static_cast<double>(at[a]);
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t n = 0; n < 8; ++n) {
           double w = side[n][a] != 0 ? 1 : -1;

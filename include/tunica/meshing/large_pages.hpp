@@ -19,7 +19,7 @@ inline void large_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size
   if (bytes < 2 * large) return;
   const auto address = reinterpret_cast<std::uintptr_t>(begin);
   const std::uintptr_t first = (address + small - 1) & ~(small - 1), last = (address + bytes) & ~(small - 1);
-  (void)madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+  (void)madvise(static_cast<char*>(begin) + (first - address), last - first, MADV_HUGEPAGE);
 #endif
 }
 

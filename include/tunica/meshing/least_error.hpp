@@ -29,7 +29,7 @@ struct PlaneSums {
     px += p[0], py += p[1], pz += p[2];
   }
   [[nodiscard]] double trace() const { return xx + yy + zz; }
-  [[nodiscard]] int count() const { return static_cast<int>(trace() + 0.5); }  // normals have length 1
+  [[nodiscard]] int count() const { return static_cast<int>(std::lround(trace())); }  // normals have length 1
   [[nodiscard]] Vec3 mass_point() const {
     const double share = 1.0 / count();
     return {share * px, share * py, share * pz};

@@ -96,8 +96,7 @@ void set_words(const T* v, std::size_t words, std::uint64_t* out, Test&& test) {
 #if defined(__SSE2__)
     constexpr std::size_t line = 64, ahead = 3072;  // [B]
     for (std::size_t b = 0; b < word_bits * sizeof(T); b += line)
-      _mm_prefetch(reinterpret_cast<const char*>(reinterpret_cast<std::uintptr_t>(v) + ahead + b),
-                   _MM_HINT_T0);
+      _mm_prefetch(static_cast<const char*>(static_cast<const void*>(v)) + ahead + b, _MM_HINT_T0);
 #endif
     out[w] = [&]<std::size_t... n>(std::index_sequence<n...>) {
       return (... | (std::uint64_t{test(v + lanes * n)} << lanes * n));
