@@ -476,7 +476,7 @@ TEST_SUITE("hard") {
               a.rms, ", largest ", a.most, "; ", even.report.triangles, " even ones, rms ", b.rms,
               ", largest ", b.most);
       CHECK(by_curvature.report.triangles == doctest::Approx(even.report.triangles).epsilon(0.03));
-      CHECK(a.most < b.most);
+      CHECK(a.most < 0.8 * b.most);
       ratio *= a.rms * by_curvature.report.triangles / (b.rms * even.report.triangles);
     }
     MESSAGE("rms times triangles, by curvature over even, in the mean ", std::cbrt(ratio));
