@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -11,7 +12,10 @@
 
 namespace {
 
+namespace parts {}
+
 using namespace tunica;
+namespace detail = parts;  // the library keeps no name space of that name where a user would look into it
 
 /// Sets the number of threads for one scope.
 struct Threads {
@@ -57,6 +61,35 @@ TEST_SUITE("unit") {
         for (const int v : visits) CHECK(v == 1);
       }
     }
+  }
+
+  TEST_CASE("core: a team takes every unit once and ends before a failure is reported") {
+    struct Work {
+      std::vector<std::atomic<int>> taken = std::vector<std::atomic<int>>(500);
+      std::atomic<int> busy{0};
+      std::ptrdiff_t bad = -1;
+    };
+    const auto unit = [](const void* context, std::ptrdiff_t c) {
+      auto& work = *static_cast<Work*>(const_cast<void*>(context));
+      ++work.busy;
+      ++work.taken[static_cast<std::size_t>(c)];
+      --work.busy;
+      if (c == work.bad) throw std::runtime_error("unit 100");
+    };
+    for (const std::ptrdiff_t threads : {1, 2, 7, 600}) {
+      Work work;
+      run_team(threads, 500, unit, &work);
+      for (const auto& n : work.taken) CHECK(n == 1);
+      Work bad;
+      bad.bad = 100;
+      CHECK_THROWS_WITH_AS(run_team(threads, 500, unit, &bad), "unit 100", std::runtime_error);
+      CHECK(bad.busy == 0);
+      for (std::size_t c = 0; c < 500; ++c) CHECK(bad.taken[c] <= 1);
+      for (std::size_t c = 0; c <= 100; ++c) CHECK(bad.taken[c] == 1);
+    }
+    Work none;
+    run_team(3, 0, unit, &none);
+    for (const auto& n : none.taken) CHECK(n == 0);
   }
 
   TEST_CASE("core: an exception of a chunk reaches the caller on any number of threads") {

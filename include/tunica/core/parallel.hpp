@@ -18,9 +18,8 @@ inline std::atomic<int>& thread_count() {
   return n;
 }
 
-namespace detail {
-
-/// Calls work(context, c) for 0 <= c < count on that many threads. The first exception is rethrown.
+/// Calls work(context, c) for every c of [0, count) on `threads` threads, the calling one among them; which
+/// thread takes which c is left open. The first exception is rethrown once all threads have ended.
 inline void run_team(std::ptrdiff_t threads, std::ptrdiff_t count, void (*work)(const void*, std::ptrdiff_t),
                      const void* context) {
   std::atomic<std::ptrdiff_t> next{0};
@@ -45,8 +44,6 @@ inline void run_team(std::ptrdiff_t threads, std::ptrdiff_t count, void (*work)(
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace detail
-
 /// Calls body(begin, end) for the chunks of [0, n); each chunk is a unit of work for one thread.
 /// body must write only what belongs to its chunk; then the result has the same bits on any
 /// number of threads. The first exception of a chunk is rethrown.
@@ -59,7 +56,7 @@ void parallel_chunks(std::ptrdiff_t n, std::ptrdiff_t chunk, Body&& body) {
     for (std::ptrdiff_t c = 0; c < chunks; ++c) run(c);
     return;
   }
-  detail::run_team(
+  run_team(
       threads, chunks,
       [](const void* context, std::ptrdiff_t c) { (*static_cast<const decltype(run)*>(context))(c); }, &run);
 }
