@@ -2,6 +2,8 @@
 // Dual<T, N>: a number with N derivatives (forward automatic differentiation); nest it for second ones.
 #pragma once
 
+#include "tunica/core/select.hpp"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -13,7 +15,7 @@
 namespace tunica {
 
 /// value + sum_i d[i] e_i with e_i e_j = 0. T is double, a pack or again a Dual. Comparisons see the
-/// value alone. Works in fixed-size Eigen matrices.
+/// value alone and give what those of T give (a pack's: a mask). Works in fixed-size Eigen matrices.
 ///   const auto x = Dual<double, 2>::variable(3.0, 0);  (x * x).d[0] == 6
 template <class T, int N>
 struct Dual {
@@ -53,11 +55,20 @@ struct Dual {
     return combine(q, a, inverse, b, -q * inverse);
   }
 
-  friend constexpr bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
-  friend constexpr bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
-  friend constexpr bool operator>(const Dual& a, const Dual& b) { return b < a; }
-  friend constexpr bool operator<=(const Dual& a, const Dual& b) { return !(b < a); }
-  friend constexpr bool operator>=(const Dual& a, const Dual& b) { return !(a < b); }
+  friend constexpr auto operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
+  friend constexpr auto operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
+  friend constexpr auto operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
+  friend constexpr auto operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
+  friend constexpr auto operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
+
+  /// Lane by lane where T has lanes; a bool is taken by the general one.
+  template <class Mask>
+  requires(!std::same_as<Mask, bool>) [[nodiscard]] friend constexpr Dual
+      select(const Mask& mask, const Dual& a, const Dual& b) {
+    Dual r(select(mask, a.value, b.value));
+    for (std::size_t i = 0; i < N; ++i) r.d[i] = select(mask, a.d[i], b.d[i]);
+    return r;
+  }
 
   // f(a) has the derivatives f'(a) a.d; the functions of T are found beside it or in std.
   friend Dual sqrt(const Dual& a) {
@@ -91,7 +102,7 @@ struct Dual {
     using std::pow;
     return combine(pow(a.value, exponent), a, T(exponent) * pow(a.value, exponent - 1));
   }
-  friend Dual abs(const Dual& a) { return a.value < T(0) ? -a : a; }
+  friend Dual abs(const Dual& a) { return select(a.value < T(0), -a, a); }
 
  private:
   static constexpr Dual combine(const T& v, const Dual& a, const T& fa) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a strain energy is: Phi = U(J) + Phi(I1, I2) of the isochoric C, as [PEREZ08, (3)-(4)].
+// What a strain energy is: Phi = U(J) + Phi(invariants) of the isochoric C, as [PEREZ08, (3)-(4)].
 #pragma once
 
 #include "tunica/core/dual.hpp"
@@ -10,8 +10,9 @@
 
 namespace tunica::solid {
 
-/// Invariants of the isochoric right Cauchy-Green tensor J^-2/3 C   [PEREZ08, (4)]
-enum class Invariant { I1, I2 };
+/// Invariants of the isochoric right Cauchy-Green tensor J^-2/3 C   [PEREZ08, (4)]; I4 and I6 are its squared
+/// stretches along the fibres of the first and the second family   [HGO00].
+enum class Invariant { I1, I2, I4, I6 };
 
 /// How many invariants a law reads.
 template <class Law>
@@ -23,7 +24,9 @@ inline constexpr std::size_t invariant_count = Law::reads.size();
 ///     template <class S> S energy(const std::array<S, 1>& I) const { return c10 * (I[0] - 3); }
 ///     double c10;  // [Pa]
 ///   };
-/// `slopes(I)` with the first and second derivatives is optional; without it they come from duals.
+/// `slopes(I)` with the first and second derivatives is optional; without it they come from duals. A law of
+/// which the second ones are all zero may say `static constexpr bool linear = true`. One that reads I4 or I6
+/// names the fibres at a point: `template <class S> using Point = Fibres<S, 2>`.
 template <class Law>
 concept IsochoricEnergy = requires(const Law& law, const std::array<double, Law::reads.size()>& I) {
   { Law::reads[0] } -> std::convertible_to<Invariant>;

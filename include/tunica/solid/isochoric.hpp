@@ -60,6 +60,9 @@ struct Reading {
   static constexpr std::size_t count = invariant_count<Law>;
   static constexpr bool second =
       std::find(Law::reads.begin(), Law::reads.end(), Invariant::I2) != Law::reads.end();
+  static_assert(std::find(Law::reads.begin(), Law::reads.end(), Invariant::I4) == Law::reads.end() &&
+                    std::find(Law::reads.begin(), Law::reads.end(), Invariant::I6) == Law::reads.end(),
+                "a law with fibres goes through solid::response(law, F, fibres)");
   Symmetric<S> b, b2;  // b2 = b b, set if the law reads I2
   std::array<S, count> I;
   std::array<Symmetric<S>, count> M;

@@ -13,6 +13,7 @@ struct NeoHooke {
   double c10;  // [Pa]
 
   static constexpr std::array reads{Invariant::I1};
+  static constexpr bool linear = true;
 
   template <class S>
   [[nodiscard]] S energy(const std::array<S, 1>& I) const {
@@ -51,6 +52,7 @@ struct MooneyRivlin {
   double c01;  // [Pa]
 
   static constexpr std::array reads{Invariant::I1, Invariant::I2};
+  static constexpr bool linear = true;
 
   template <class S>
   [[nodiscard]] S energy(const std::array<S, 2>& I) const {

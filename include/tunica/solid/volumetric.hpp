@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Volumetric energies U(J) with bulk modulus kappa = U''(1), and the pair of both parts of a law.
+// Volumetric energies U(J) with bulk modulus kappa = U''(1).
 #pragma once
 
 #include "tunica/solid/energy.hpp"
+#include "tunica/solid/hyperelastic.hpp"
 
 #include <cmath>
 
@@ -68,15 +69,5 @@ struct SimoTaylor {
 };
 
 static_assert(VolumetricEnergy<Quadratic> && VolumetricEnergy<Logarithmic> && VolumetricEnergy<SimoTaylor>);
-
-/// Phi = U(J) + Phi(invariants of the isochoric C)   [PEREZ08, (3)]
-///   Hyperelastic{Yeoh{.c10 = 174e3, .c20 = 1880e3}, Quadratic{.kappa = 348e6}}
-template <class Isochoric, class Volumetric>
-struct Hyperelastic {
-  Isochoric isochoric;
-  Volumetric volumetric;
-};
-template <class I, class V>
-Hyperelastic(I, V) -> Hyperelastic<I, V>;
 
 }  // namespace tunica::solid
