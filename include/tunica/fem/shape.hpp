@@ -10,7 +10,8 @@
 
 namespace tunica::fem {
 
-/// Coordinates on the reference cell: [-1, 1]^dim for Quad4 and Hex8, the unit simplex for Tri3, Tet4.
+/// Coordinates on the reference cell: [-1, 1]^dim for lines, quadrilaterals and hexahedra, the unit simplex
+/// for triangles and tetrahedra, the unit triangle x [-1, 1] for wedges.
 template <int Dim>
 using LocalPoint = std::array<double, Dim>;
 
@@ -36,7 +37,8 @@ inline constexpr std::array<std::array<int, Dim>, Nodes> corners = [] {
   constexpr std::array<std::array<int, 2>, 4> square{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   std::array<std::array<int, Dim>, Nodes> c{};
   for (std::size_t a = 0; a < Nodes; ++a) {
-    c[a][0] = square[a % 4][0], c[a][1] = square[a % 4][1];
+    c[a][0] = square[a % 4][0];
+    if constexpr (Dim > 1) c[a][1] = square[a % 4][1];
     if constexpr (Dim == 3) c[a][2] = a < 4 ? -1 : 1;
   }
   return c;
@@ -49,19 +51,21 @@ struct TensorLinear {
   static constexpr int nodes = C::nodes;
   static constexpr std::size_t dim = C::dim;
 
-  static constexpr std::array<double, C::nodes> values(const LocalPoint<C::dim>& xi) {
-    std::array<double, C::nodes> N{};
+  template <class T = double>
+  static constexpr std::array<T, C::nodes> values(const std::array<T, C::dim>& xi) {
+    std::array<T, C::nodes> N{};
     for (std::size_t a = 0; a < C::nodes; ++a) {
-      N[a] = 1;
+      N[a] = T(1);
       for (std::size_t i = 0; i < dim; ++i) N[a] *= 0.5 * (1 + xi[i] * corners<C::dim, C::nodes>[a][i]);
     }
     return N;
   }
-  static constexpr std::array<LocalPoint<C::dim>, C::nodes> gradients(const LocalPoint<C::dim>& xi) {
-    std::array<LocalPoint<C::dim>, C::nodes> G{};
+  template <class T = double>
+  static constexpr std::array<std::array<T, C::dim>, C::nodes> gradients(const std::array<T, C::dim>& xi) {
+    std::array<std::array<T, C::dim>, C::nodes> G{};
     for (std::size_t a = 0; a < C::nodes; ++a)
       for (std::size_t i = 0; i < dim; ++i) {
-        G[a][i] = 0.5 * corners<C::dim, C::nodes>[a][i];
+        G[a][i] = T(0.5 * corners<C::dim, C::nodes>[a][i]);
         for (std::size_t j = 0; j < dim; ++j)
           if (j != i) G[a][i] *= 0.5 * (1 + xi[j] * corners<C::dim, C::nodes>[a][j]);
       }
@@ -75,20 +79,24 @@ struct SimplexLinear {
   using cell = C;
   static constexpr int nodes = C::nodes;
 
-  static constexpr std::array<double, C::nodes> values(const LocalPoint<C::dim>& xi) {
-    std::array<double, C::nodes> N{1};
+  template <class T = double>
+  static constexpr std::array<T, C::nodes> values(const std::array<T, C::dim>& xi) {
+    std::array<T, C::nodes> N{T(1)};
     for (std::size_t i = 0; i < C::dim; ++i) N[0] -= xi[i], N[i + 1] = xi[i];
     return N;
   }
-  static constexpr std::array<LocalPoint<C::dim>, C::nodes> gradients(const LocalPoint<C::dim>&) {
-    std::array<LocalPoint<C::dim>, C::nodes> G{};
-    for (std::size_t i = 0; i < C::dim; ++i) G[0][i] = -1, G[i + 1][i] = 1;
+  template <class T = double>
+  static constexpr std::array<std::array<T, C::dim>, C::nodes> gradients(const std::array<T, C::dim>&) {
+    std::array<std::array<T, C::dim>, C::nodes> G{};
+    for (std::size_t i = 0; i < C::dim; ++i) G[0][i] = T(-1), G[i + 1][i] = T(1);
     return G;
   }
 };
 
 }  // namespace detail
 
+template <>
+struct Lagrange<mesh::Line2> : detail::TensorLinear<mesh::Line2> {};
 template <>
 struct Lagrange<mesh::Tri3> : detail::SimplexLinear<mesh::Tri3> {};
 template <>
