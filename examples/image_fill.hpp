@@ -4,6 +4,7 @@
 #pragma once
 
 #include "image_pipeline.hpp"
+#include "patch_surface.hpp"
 #include "tunica/meshing/boundary_layers.hpp"
 #include "tunica/meshing/cut_voxels.hpp"
 #include "tunica/meshing/dual_hexahedra.hpp"
@@ -33,12 +34,14 @@ struct FillChoice {
 inline void add_fill_options(Cli& cli, FillChoice& o) {
   cli.choice<Fill>(
       "--fill",
-      "what fills it: tetrahedra, hexahedra of a grid of spacing L, one hexahedron a voxel, nothing",
+      "what fills it: tetrahedra (as without it), hexahedra of a grid of spacing L, one hexahedron a voxel,\n"
+      "nothing",
       {{"tets", Fill::tets}, {"hexes", Fill::hexes}, {"voxels", Fill::voxels}, {"none", Fill::none}}, o.fill);
   cli.choice<SizeFrom>(
       "--size-from",
-      "what edges follow: shorter than L where the wall is curved (it lies within L/40 of them) or "
-      "the vessel is thin (8 across), or L at the wall and up to 3 L away from it",
+      "what edges follow (none: all are about L): curvature, shorter than L where the wall is curved (it\n"
+      "lies within L/40 of them); diameter, shorter where the vessel is thin (8 across); distance, L at the\n"
+      "wall and up to 3 L away from it",
       {{"curvature", SizeFrom::curvature},
        {"distance", SizeFrom::distance},
        {"diameter", SizeFrom::diameter}},
@@ -77,31 +80,6 @@ struct [[nodiscard]] FilledVessel {
 };
 
 namespace detail {
-
-/// The border of hexahedra, its regions the patches in their order.
-[[nodiscard]] inline mesh::QuadSurface border_of(const mesh::HexMesh& hexes) {
-  mesh::QuadSurface s;
-  Eigen::Index faces = 0;
-  for (const auto& p : hexes.patches) faces += p.faces.cols();
-  s.cells.resize(4, faces);
-  std::vector<Index> number(static_cast<std::size_t>(hexes.node_count()), -1), nodes;
-  Eigen::Index at = 0;
-  for (const auto& p : hexes.patches) {
-    for (Eigen::Index f = 0; f < p.faces.cols(); ++f, ++at) {
-      for (Eigen::Index k = 0; k < 4; ++k) {
-        Index& n = number[static_cast<std::size_t>(p.faces(k, f))];
-        if (n < 0) n = static_cast<Index>(nodes.size()), nodes.push_back(p.faces(k, f));
-        s.cells(k, at) = n;
-      }
-      s.region.push_back(static_cast<Index>(s.region_names.size()));
-    }
-    s.region_names.push_back(p.name);
-  }
-  s.nodes.resize(3, static_cast<Eigen::Index>(nodes.size()));
-  for (std::size_t n = 0; n < nodes.size(); ++n)
-    s.nodes.col(static_cast<Eigen::Index>(n)) = hexes.nodes.col(nodes[n]);
-  return s;
-}
 
 [[nodiscard]] inline std::optional<meshing::GradedSize> size_of(const mesh::Surface& s, SizeFrom from,
                                                                 double edge) {
@@ -146,6 +124,8 @@ inline void tell_hexahedra(const mesh::HexMesh& hexes, const mesh::HexQuality& q
   j["volume"] = mesh::volume(hexes);
   j["smallest_scaled_jacobian"] = q.scaled_jacobian.least, j["mean_scaled_jacobian"] = q.scaled_jacobian.mean;
   j["one_percent_scaled_jacobian"] = q.scaled_jacobian.quantile(0.01), j["worst_place"] = q.worst_place;
+  tell_cells(hexes.cell_count(), "hexahedra", "least scaled Jacobian " + short_text(q.scaled_jacobian.least),
+             q.scaled_jacobian.mean);
 }
 
 }  // namespace detail
@@ -235,7 +215,7 @@ inline void fill_voxels(const ImageVessel& vessel, FilledVessel& out, Stages& st
   } else {
     fill_triangles(how, vessel, out, stage, report);
   }
-  if (out.hexes.cell_count() > 0) out.quads = detail::border_of(out.hexes);
+  if (out.hexes.cell_count() > 0) out.quads = surface_of_patches(out.hexes);
   return out;
 }
 

@@ -40,18 +40,21 @@ struct ImageOptions {
 /// edge_default: what holds without --edge, for --help.
 inline void add_image_options(Cli& cli, ImageOptions& o,
                               const std::string& edge_default = "1.5 times the largest spacing") {
-  cli.option("--iso", "V", "iso-value: inside is value >= V", o.iso);
+  cli.option("--iso", "V", "iso-value: inside is value >= V (needed with an image; the phantom's: 1300)",
+             o.iso);
   cli.option("--seed", "i,j,k", "a voxel of the vessel (none: the largest component)",
              [&o](const std::string& text) {
                const auto v = numbers_of<Index>(text);
                if (v.size() != 3) throw UsageError("a seed is i,j,k");
                o.seed = image::Voxel{v[0], v[1], v[2]};
              });
-  cli.repeated("--cut", "px,py,pz,nx,ny,nz[,r]",
-               "a plane, outward normal, or with r a disc that severs only the vessel it crosses",
-               [&o](const std::string& text) { o.cuts.push_back(cut_of(text)); });
+  cli.repeated(
+      "--cut", "px,py,pz,nx,ny,nz[,r]",
+      "an end: a plane through p, normal n outward, or with r a disc that severs only the vessel it\n"
+      "crosses (the phantom without cuts: its three ports)",
+      [&o](const std::string& text) { o.cuts.push_back(cut_of(text)); });
   cli.choice<Contourer>(
-      "--surface", "how the surface is contoured",
+      "--surface", "how the surface is contoured (marching-cubes)",
       {{"marching-cubes", Contourer::marching_cubes}, {"dual-contouring", Contourer::dual_contouring}},
       o.surface);
   cli.option("--edge", "L", "edge length (none: " + edge_default + "; 0: the contourer's triangles)",

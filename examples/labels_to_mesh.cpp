@@ -3,10 +3,13 @@
 #include "cli.hpp"
 #include "json.hpp"
 #include "material_figures.hpp"
+#include "mesh_figures.hpp"
 #include "output_files.hpp"
+#include "patch_surface.hpp"
 #include "stages.hpp"
 #include "tunica/image/phantom_labels.hpp"
 #include "tunica/io/vtk_image.hpp"
+#include "tunica/io/vtp.hpp"
 #include "tunica/io/vtu.hpp"
 #include "tunica/meshing/multi_region.hpp"
 
@@ -25,10 +28,12 @@ int main(int argc, char** argv) {
           "Fills the labels of an image with tetrahedra, in the unit of the image; 0 is outside.");
   cli.argument(
       "LABELS.vtk",
-      "VTK legacy image whose values are whole numbers, or the word phantom: a vessel that needs no file",
+      "VTK legacy image whose values are whole numbers, or the word phantom: a vessel that needs no file,\n"
+      "1 its lumen, 2 a thrombus, 3 its wall",
       in);
   cli.repeated(
-      "--name", "N=TEXT", "what label N is called, 1=lumen (material N)", [&](const std::string& text) {
+      "--name", "N=TEXT", "what label N is called, as in 1=lumen (without it: material N)",
+      [&](const std::string& text) {
         const auto equal = text.find('=');
         if (equal == std::string::npos || equal + 1 == text.size()) throw UsageError("expected N=TEXT");
         options.names.push_back({number_of<std::int32_t>(text.substr(0, equal)), text.substr(equal + 1)});
@@ -45,7 +50,10 @@ int main(int argc, char** argv) {
                options.sweeps = number_of<int>(text);
                if (options.sweeps < 0 || options.sweeps > 1000) throw UsageError("must be from 0 to 1000");
              });
-  cli.option("-o", "OUT.vtu", "the tetrahedra, with their labels as \"material\" (the image's name)", out);
+  cli.option("-o", "OUT.vtu",
+             "the tetrahedra, with their labels as \"material\"; the interfaces go to OUT.surface.vtp\n"
+             "(the image's name)",
+             out);
   cli.option("--report", "FILE.json", "figures, and elapsed and CPU seconds of each stage", report_file);
 
   return run_program(cli, argc, argv, [&] {
@@ -60,12 +68,17 @@ int main(int argc, char** argv) {
     });
     const auto meshed = stage("mesh", [&] { return meshing::multi_region(labels, options); });
     report["fill"] = material_figures(meshed);
+    tell_cells(meshed.mesh.cell_count(), "tetrahedra",
+               "smallest dihedral angle " + short_text(meshed.report.min_dihedral) + " degrees",
+               meshed.report.mean_ratio);
     OutputFiles files;
     stage("write", [&] {
       const std::vector<std::int32_t> material(meshed.material.begin(), meshed.material.end());
       files.write(volume, [&](const auto& path) {
         io::write_vtu(path, meshed.mesh, {.cells = {{"material", material}}});
       });
+      files.write(surface_file(volume),
+                  [&](const auto& path) { io::write_vtp(path, surface_of_patches(meshed.mesh)); });
     });
     finish(files, stage, report, report_file);
   });

@@ -8,6 +8,7 @@
 #include "tunica/io/atomic_file.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -35,7 +36,13 @@ class OutputFiles {
     std::forward<Write>(write_to)(path);
     made_.push_back(path);
   }
-  void keep() { made_.clear(); }
+  /// Tells their names.
+  void keep() {
+    std::string names;
+    for (const auto& path : made_) names += (names.empty() ? "" : ", ") + path.string();
+    std::printf("wrote %s\n", names.c_str());
+    made_.clear();
+  }
 
  private:
   std::vector<std::filesystem::path> made_;

@@ -34,6 +34,8 @@ TEST_SUITE("job") {
     for (const char* name : {"lumen|wall", "lumen|border z0", "wall|outside", "wall|border z1"})
       CHECK(has(report, std::string("\"") + name + "\""));
     CHECK(has(text_of(folder.path() / "a.vtu"), "Name=\"material\""));
+    CHECK(has(text_of(folder.path() / "a.surface.vtp"), "Name=\"patch\""));
+    CHECK(has(o.out, "wrote a.vtu, a.surface.vtp, r.json"));
     CHECK(faults(*checker, folder, "a.vtu") == "");
   }
 

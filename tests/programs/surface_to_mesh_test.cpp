@@ -199,7 +199,9 @@ TEST_SUITE("job") {
     refused("none.stl", "", 1, "no such file");
     refused("v00_control_ok.vtk", "", 1, "the header says ");
     refused("s00_control_closed.stl", " --edge 0", 2, "--edge: must be more than 0");
-    refused("s02_open_hole.stl", " --fill-holes 100", 1, "1 boundary loop: 11 edges around (");
+    refused("s02_open_hole.stl", "", 1, "1 boundary loop: 11 edges around (");
+    refused("s02_open_hole.stl", " --fill-holes 100", 2, "--fill-holes needs --repair");
+    refused("s00_control_closed.stl", " --end 1,2,3", 2, "--end needs --centre-line");
     refused("s00_control_closed.stl", " --repair --fill-holes -1", 2, "--fill-holes: must not be negative");
     refused("s00_control_closed.stl", " --centre-line c.vtp --end 1,2", 2, "\"1,2\" is not X,Y,Z");
     refused("s00_control_closed.stl", " --egde 2", 2, "did you mean --edge?");
