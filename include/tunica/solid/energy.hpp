@@ -24,9 +24,10 @@ inline constexpr std::size_t invariant_count = Law::reads.size();
 ///     template <class S> S energy(const std::array<S, 1>& I) const { return c10 * (I[0] - 3); }
 ///     double c10;  // [Pa]
 ///   };
-/// `slopes(I)` with the first and second derivatives is optional; without it they come from duals. A law of
-/// which the second ones are all zero may say `static constexpr bool linear = true`. One that reads I4 or I6
-/// names the fibres at a point: `template <class S> using Point = Fibres<S, 2>`.
+/// `slopes(I)` with the first and second derivatives is optional; without it they come from duals.
+/// `curved`, optional too, lists the invariants in which the second ones are not all zero (an empty array: a
+/// linear energy). A law that reads I4 or I6 names the fibres at a point:
+///   template <class S> using Point = Fibres<S, 2>;
 template <class Law>
 concept IsochoricEnergy = requires(const Law& law, const std::array<double, Law::reads.size()>& I) {
   { Law::reads[0] } -> std::convertible_to<Invariant>;

@@ -24,8 +24,14 @@ template <class S>
     return exp(log(x) * S(1. / 3));
 }
 
+/// Whether the second derivatives by this invariant may be other than zero.
 template <class Law>
-concept Linear = Law::linear;
+[[nodiscard]] constexpr bool curved(Invariant what) {
+  if constexpr (requires { Law::curved; })
+    return std::find(Law::curved.begin(), Law::curved.end(), what) != Law::curved.end();
+  else
+    return true;
+}
 
 /// F, J and what the invariants of a law share. The unscaled ones are q = F : F M with M = 1 (I1) or a x a
 /// (fibres), and i2 = (q1^2 - C : C)/2; then I = s q with s = J^-2/3, I2 = s^2 i2.
@@ -41,6 +47,8 @@ struct IsochoricReading {
   }
   static constexpr bool isotropic = reads(Invariant::I1) || reads(Invariant::I2);
   static constexpr bool second = reads(Invariant::I2);
+  static constexpr auto curved =
+      std::count_if(Law::reads.begin(), Law::reads.end(), [](Invariant k) { return detail::curved<Law>(k); });
   static constexpr std::array<bool, 2> fibre{reads(Invariant::I4), reads(Invariant::I6)};
   static constexpr std::array<std::size_t, 2> fibre_place{place(Invariant::I4), place(Invariant::I6)};
 
@@ -202,10 +210,12 @@ template <IsochoricEnergy Law, class S>
   }
 
   std::array<Tensor<S>, At::count> D, H;  // H_k = sum_l Phi_kl D_l
-  if constexpr (!detail::Linear<Law>) {
+  constexpr auto curves = [](std::size_t k) { return detail::curved<Law>(Law::reads[k]); };
+  if constexpr (At::curved != 0) {
     D = detail::invariant_slopes(at, X);
     for (std::size_t k = 0; k < At::count; ++k)
-      for (std::size_t l = 0; l < At::count; ++l) H[k] += W.second[k][l] * D[l];
+      for (std::size_t l = 0; l < At::count; ++l)
+        if (curves(k) && curves(l)) H[k] += W.second[k][l] * D[l];
   }
   for (std::size_t p = 0; p < 9; ++p)
     for (std::size_t q = p; q < 9; ++q) {
@@ -216,8 +226,8 @@ template <IsochoricEnergy Law, class S>
         A += crossed * (F.m[p] * F.m[q] + F.m[p] * F.m[q] - F.m[3 * i + L] * F.m[3 * k + J]);
         if (J == L) A -= crossed * b.m[3 * i + k];
       }
-      if constexpr (!detail::Linear<Law>)
-        for (std::size_t n = 0; n < At::count; ++n) A += D[n].m[p] * H[n].m[q];
+      for (std::size_t n = 0; n < At::count; ++n)
+        if (curves(n)) A += D[n].m[p] * H[n].m[q];
       r.A[9 * p + q] = A;
       r.A[9 * q + p] = A;
     }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Isotropic isochoric energies: neo-Hooke, Mooney-Rivlin and Yeoh, the law (17) of [PEREZ08].
+// Isotropic isochoric energies: neo-Hooke, Mooney-Rivlin, Demiray and Yeoh, the law (17) of [PEREZ08].
 #pragma once
 
 #include "tunica/solid/energy.hpp"
 
 #include <array>
+#include <cmath>
 
 namespace tunica::solid {
 
@@ -13,7 +14,7 @@ struct NeoHooke {
   double c10;  // [Pa]
 
   static constexpr std::array reads{Invariant::I1};
-  static constexpr bool linear = true;
+  static constexpr std::array<Invariant, 0> curved{};
 
   template <class S>
   [[nodiscard]] S energy(const std::array<S, 1>& I) const {
@@ -52,7 +53,7 @@ struct MooneyRivlin {
   double c01;  // [Pa]
 
   static constexpr std::array reads{Invariant::I1, Invariant::I2};
-  static constexpr bool linear = true;
+  static constexpr std::array<Invariant, 0> curved{};
 
   template <class S>
   [[nodiscard]] S energy(const std::array<S, 2>& I) const {
@@ -64,6 +65,29 @@ struct MooneyRivlin {
   }
 };
 
-static_assert(IsochoricEnergy<NeoHooke> && IsochoricEnergy<Yeoh> && IsochoricEnergy<MooneyRivlin>);
+/// Phi = mu/(2 a) (exp(a (I1 - 3)) - 1), Fung's exponential of I1   [DEMIRAY72]; shear modulus mu.
+struct Demiray {
+  double mu;  // [Pa]
+  double a;   // stiffening [-], not 0: that is NeoHooke{mu/2}
+
+  static constexpr std::array reads{Invariant::I1};
+
+  template <class S>
+  [[nodiscard]] S energy(const std::array<S, 1>& I) const {
+    using std::exp;
+    return S(mu / (2 * a)) * (exp(S(a) * (I[0] - S(3))) - S(1));
+  }
+  template <class S>
+  [[nodiscard]] Slopes<S, 1> slopes(const std::array<S, 1>& I) const {
+    using std::exp;
+    Slopes<S, 1> s;
+    s.first[0] = S(0.5 * mu) * exp(S(a) * (I[0] - S(3)));
+    s.second[0][0] = S(a) * s.first[0];
+    return s;
+  }
+};
+
+static_assert(IsochoricEnergy<NeoHooke> && IsochoricEnergy<Yeoh> && IsochoricEnergy<MooneyRivlin> &&
+              IsochoricEnergy<Demiray>);
 
 }  // namespace tunica::solid

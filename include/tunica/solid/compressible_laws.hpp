@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// Laws of the whole F with P and dP/dF in closed form: compressible neo-Hooke and St Venant-Kirchhoff.
+#pragma once
+
+#include "tunica/solid/material.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace tunica::solid {
+
+/// W = mu/2 (I1 - 3) - mu ln J + lambda/2 ln^2 J with I1 = F : F; of small strains Hooke's law   [BONET97,
+/// (5.28)].
+struct CompressibleNeoHooke {
+  double mu;      // shear modulus [Pa]
+  double lambda;  // Lame's first parameter [Pa]; the bulk modulus is lambda + 2/3 mu
+
+  template <class S>
+  [[nodiscard]] S energy(const Tensor<S>& F) const {
+    using std::log;
+    const S l = log(determinant(F));
+    return S(0.5 * mu) * (double_dot(F, F) - S(3)) + l * (S(0.5 * lambda) * l - S(mu));
+  }
+  /// P = mu F + (lambda ln J - mu) F^-T
+  template <class S>
+  [[nodiscard]] Tensor<S> stress(const Tensor<S>& F) const {
+    using std::log;
+    const Tensor<S> cof = cofactor(F);
+    const S J = F.m[0] * cof.m[0] + F.m[1] * cof.m[1] + F.m[2] * cof.m[2];
+    return S(mu) * F + ((S(lambda) * log(J) - S(mu)) / J) * cof;
+  }
+  /// A_iJkL = mu d_ik d_JL + lambda g_iJ g_kL + (mu - lambda ln J) g_iL g_kJ with g = F^-T
+  template <class S>
+  [[nodiscard]] Response<S> response(const Tensor<S>& F) const {
+    using std::log;
+    Tensor<S> g = cofactor(F);
+    const S J = F.m[0] * g.m[0] + F.m[1] * g.m[1] + F.m[2] * g.m[2];
+    g *= S(1) / J;
+    const S swap = S(mu) - S(lambda) * log(J);
+    const Tensor<S> lambda_g = S(lambda) * g, swap_g = swap * g;
+    Response<S> r;
+    for (std::size_t p = 0; p < 9; ++p) {
+      r.P.m[p] = S(mu) * F.m[p] - swap_g.m[p];
+      for (std::size_t q = p; q < 9; ++q) {
+        const std::size_t i = p / 3, K = p % 3, k = q / 3, L = q % 3;
+        S A = lambda_g.m[p] * g.m[q] + swap_g.m[3 * i + L] * g.m[3 * k + K];
+        if (p == q) A += S(mu);
+        r.A[9 * p + q] = A;
+        r.A[9 * q + p] = A;
+      }
+    }
+    return r;
+  }
+};
+
+/// W = lambda/2 tr(E)^2 + mu E : E with E = (F^T F - 1)/2. For small strains: it has no resistance against
+/// being pressed to nothing, and none against squares turned inside out.
+struct StVenantKirchhoff {
+  double mu;      // shear modulus [Pa]
+  double lambda;  // Lame's first parameter [Pa]
+
+  template <class S>
+  [[nodiscard]] S energy(const Tensor<S>& F) const {
+    const Tensor<S> E = strain(F);
+    const S tr = trace(E);
+    return S(0.5 * lambda) * tr * tr + S(mu) * double_dot(E, E);
+  }
+  /// P = F S with S = lambda tr(E) 1 + 2 mu E
+  template <class S>
+  [[nodiscard]] Tensor<S> stress(const Tensor<S>& F) const {
+    return product(F, second_stress(F));
+  }
+  /// A_iJkL = d_ik S_JL + lambda F_iJ F_kL + mu (F_iL F_kJ + (F F^T)_ik d_JL)
+  template <class S>
+  [[nodiscard]] Response<S> response(const Tensor<S>& F) const {
+    const Tensor<S> T = second_stress(F), b = product(F, transpose(F));
+    Response<S> r;
+    r.P = product(F, T);
+    const Tensor<S> lambda_F = S(lambda) * F, mu_F = S(mu) * F, mu_b = S(mu) * b;
+    for (std::size_t p = 0; p < 9; ++p)
+      for (std::size_t q = p; q < 9; ++q) {
+        const std::size_t i = p / 3, K = p % 3, k = q / 3, L = q % 3;
+        S A = lambda_F.m[p] * F.m[q] + mu_F.m[3 * i + L] * F.m[3 * k + K];
+        if (i == k) A += T.m[3 * K + L];
+        if (K == L) A += mu_b.m[3 * i + k];
+        r.A[9 * p + q] = A;
+        r.A[9 * q + p] = A;
+      }
+    return r;
+  }
+
+ private:
+  template <class S>
+  [[nodiscard]] static Tensor<S> strain(const Tensor<S>& F) {
+    return S(0.5) * (transpose_product(F, F) - identity<S>());
+  }
+  template <class S>
+  [[nodiscard]] Tensor<S> second_stress(const Tensor<S>& F) const {
+    const Tensor<S> E = strain(F);
+    Tensor<S> T = S(2 * mu) * E;
+    const S pressure = S(lambda) * trace(E);
+    for (std::size_t k = 0; k < 9; k += 4) T.m[k] += pressure;
+    return T;
+  }
+};
+
+static_assert(Material<CompressibleNeoHooke> && Material<StVenantKirchhoff>);
+
+}  // namespace tunica::solid
