@@ -9,19 +9,10 @@ import sys
 
 import vtk
 
-from picture import actor, behind
+from drawing import actor, behind, read, save, view, window
 
 WIDTH, HEIGHT = 420, 420
 COLOURS = [(0.85, 0.45, 0.42), (0.95, 0.87, 0.75), (0.5, 0.62, 0.8), (0.6, 0.75, 0.5), (0.8, 0.7, 0.9)]
-
-
-def read(name):
-    reader = vtk.vtkXMLPolyDataReader() if name.endswith(".vtp") else vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(name)
-    reader.Update()
-    if reader.GetOutput().GetNumberOfCells() == 0:
-        sys.exit(f"error: {name}: no cells; make it first")
-    return reader.GetOutput()
 
 
 def parts(mesh):
@@ -42,53 +33,33 @@ def parts(mesh):
     yield 0, mesh
 
 
-def panel(title, name):
+def panel(shown, part, title, name):
     mesh = read(name)
     x0, x1, y0, y1, z0, z1 = mesh.GetBounds()
     centre = ((x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2)
     opened = mesh if name.endswith(".vtp") else behind(mesh, centre, (0, 0, 1))
-    renderer = vtk.vtkRenderer()
-    renderer.SetBackground(1, 1, 1)
-    for label, part in parts(opened):
-        a = actor(part, colour=COLOURS[label % len(COLOURS)], edges=True)
+    actors = [actor(some, colour=COLOURS[label % len(COLOURS)], edges=True) for label, some in parts(opened)]
+    for a in actors:
         a.GetProperty().SetLineWidth(0.6)
-        renderer.AddActor(a)
+    renderer = view(shown, part, actors, centre, (centre[0] + 0.35, centre[1] - 0.25, centre[2] + 1))
+    renderer.ResetCamera()
+    renderer.GetActiveCamera().SetParallelScale(0.5 * 1.08 * max(x1 - x0, y1 - y0))
     text = vtk.vtkTextActor()
     text.SetInput(title)
     text.GetTextProperty().SetColor(0.1, 0.1, 0.1)
     text.GetTextProperty().SetFontSize(17)
     text.SetPosition(12, HEIGHT - 30)
     renderer.AddActor2D(text)
-    camera = renderer.GetActiveCamera()
-    camera.ParallelProjectionOn()
-    camera.SetFocalPoint(*centre)
-    camera.SetPosition(centre[0] + 0.35, centre[1] - 0.25, centre[2] + 1)
-    camera.SetViewUp(0, 1, 0)
-    renderer.ResetCamera()
-    camera.SetParallelScale(0.5 * 1.08 * max(x1 - x0, y1 - y0))
-    return renderer
 
 
 def main(out, columns, *panels):
     columns = int(columns)
     rows = -(-len(panels) // columns)
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(8)
-    window.SetSize(columns * WIDTH, rows * HEIGHT)
+    shown = window(columns * WIDTH, rows * HEIGHT)
     for k, (title, _, name) in enumerate(p.partition("=") for p in panels):
-        renderer = panel(title, name)
         row, column = rows - 1 - k // columns, k % columns
-        renderer.SetViewport(column / columns, row / rows, (column + 1) / columns, (row + 1) / rows)
-        window.AddRenderer(renderer)
-    window.Render()
-    shot = vtk.vtkWindowToImageFilter()
-    shot.SetInput(window)
-    shot.ReadFrontBufferOff()
-    writer = vtk.vtkPNGWriter()
-    writer.SetFileName(out)
-    writer.SetInputConnection(shot.GetOutputPort())
-    writer.Write()
+        panel(shown, (column / columns, row / rows, (column + 1) / columns, (row + 1) / rows), title, name)
+    save(shown, out)
 
 
 if __name__ == "__main__":

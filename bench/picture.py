@@ -11,50 +11,14 @@ import sys
 
 import vtk
 
+from drawing import actor, behind, read, save, view, window
 
-def read(pattern):
+
+def last(pattern):
     names = sorted(glob.glob(pattern))
     if not names:
         sys.exit(f"error: {pattern}: no such file; run the main job first")
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(names[-1])
-    reader.Update()
-    return reader.GetOutput()
-
-
-def behind(grid, centre, normal):
-    """The cells that lie behind a plane, whole."""
-    plane = vtk.vtkPlane()
-    plane.SetOrigin(centre)
-    plane.SetNormal(normal)
-    part = vtk.vtkExtractGeometry()
-    part.SetInputData(grid)
-    part.SetImplicitFunction(plane)
-    part.ExtractBoundaryCellsOn()
-    part.Update()
-    return part.GetOutput()
-
-
-def actor(data, **how):
-    surface = vtk.vtkDataSetSurfaceFilter()
-    surface.SetInputData(data)
-    mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputConnection(surface.GetOutputPort())
-    a = vtk.vtkActor()
-    a.SetMapper(mapper)
-    mapper.ScalarVisibilityOff()
-    a.GetProperty().SetColor(how.get("colour", (1, 1, 1)))
-    a.GetProperty().SetAmbient(0.25)
-    if how.get("edges"):
-        a.GetProperty().EdgeVisibilityOn()
-        a.GetProperty().SetEdgeColor(0.25, 0.25, 0.3)
-    if "array" in how:
-        mapper.ScalarVisibilityOn()
-        mapper.SetScalarModeToUsePointFieldData()
-        mapper.SelectColorArray(how["array"])
-        mapper.SetLookupTable(how["colours"])
-        mapper.UseLookupTableScalarRangeOn()
-    return a
+    return read(names[-1])
 
 
 def colours(low, high, points):
@@ -84,8 +48,8 @@ def bar(table, title):
 
 
 def main(folder, out):
-    lumen = read(os.path.join(folder, "lumen_*.vtu"))
-    wall = read(os.path.join(folder, "wall_*.vtu"))
+    lumen = last(os.path.join(folder, "lumen_*.vtu"))
+    wall = last(os.path.join(folder, "wall_*.vtu"))
     scale = vtk.vtkArrayCalculator()
     scale.SetInputData(lumen)
     scale.AddVectorArrayName("velocity")
@@ -123,34 +87,15 @@ def main(folder, out):
           actor(half[1], colour=(0.95, 0.87, 0.75))], bar(flow, "speed [m/s]\n ")),
         ([actor(wall, array="stress", colours=load, edges=True)], bar(load, "von Mises [kPa]\n ")),
     ]
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(8)
-    window.SetSize(1200, 540)
+    shown = window(1200, 540)
     for k, (actors, legend) in enumerate(views):
-        renderer = vtk.vtkRenderer()
-        renderer.SetViewport(k / len(views), 0, (k + 1) / len(views), 1)
-        renderer.SetBackground(1, 1, 1)
-        for a in actors:
-            renderer.AddActor(a)
+        renderer = view(shown, (k / len(views), 0, (k + 1) / len(views), 1), actors, centre,
+                        (centre[0], centre[1], centre[2] + 1))
         if legend:
             renderer.AddActor2D(legend)
-        camera = renderer.GetActiveCamera()
-        camera.ParallelProjectionOn()
-        camera.SetFocalPoint(*centre)
-        camera.SetPosition(centre[0], centre[1], centre[2] + 1)
-        camera.SetViewUp(0, 1, 0)
-        camera.SetParallelScale(0.53 * (y1 - y0))
+        renderer.GetActiveCamera().SetParallelScale(0.53 * (y1 - y0))
         renderer.ResetCameraClippingRange()
-        window.AddRenderer(renderer)
-    window.Render()
-    image = vtk.vtkWindowToImageFilter()
-    image.SetInput(window)
-    image.ReadFrontBufferOff()
-    writer = vtk.vtkPNGWriter()
-    writer.SetFileName(out)
-    writer.SetInputConnection(image.GetOutputPort())
-    writer.Write()
+    save(shown, out)
 
 
 if __name__ == "__main__":

@@ -124,8 +124,9 @@ inline void tell_hexahedra(const mesh::HexMesh& hexes, const mesh::HexQuality& q
   j["volume"] = mesh::volume(hexes);
   j["smallest_scaled_jacobian"] = q.scaled_jacobian.least, j["mean_scaled_jacobian"] = q.scaled_jacobian.mean;
   j["one_percent_scaled_jacobian"] = q.scaled_jacobian.quantile(0.01), j["worst_place"] = q.worst_place;
-  tell_cells(hexes.cell_count(), "hexahedra", "least scaled Jacobian " + short_text(q.scaled_jacobian.least),
-             q.scaled_jacobian.mean);
+  tell_cells(hexes.cell_count(), "hexahedra",
+             "least scaled Jacobian " + short_text(q.scaled_jacobian.least) + ", mean " +
+                 short_text(q.scaled_jacobian.mean));
 }
 
 }  // namespace detail

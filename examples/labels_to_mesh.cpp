@@ -68,9 +68,7 @@ int main(int argc, char** argv) {
     });
     const auto meshed = stage("mesh", [&] { return meshing::multi_region(labels, options); });
     report["fill"] = material_figures(meshed);
-    tell_cells(meshed.mesh.cell_count(), "tetrahedra",
-               "smallest dihedral angle " + short_text(meshed.report.min_dihedral) + " degrees",
-               meshed.report.mean_ratio);
+    tell_cells(meshed.mesh.cell_count(), meshed.report.min_dihedral, meshed.report.mean_ratio);
     OutputFiles files;
     stage("write", [&] {
       const std::vector<std::int32_t> material(meshed.material.begin(), meshed.material.end());

@@ -85,10 +85,14 @@ inline void require_countable(const mesh::Surface& s, double edge) {
                     " tetrahedra, more than " + short_text(most));
 }
 
-/// "9194 tetrahedra: smallest dihedral angle 18 degrees, mean 0.886": what a run made, on stdout.
-inline void tell_cells(Index count, const std::string& cells, const std::string& worst, double mean) {
-  std::printf("%d %s: %s, mean %s\n", static_cast<int>(count), cells.c_str(), worst.c_str(),
-              short_text(mean).c_str());
+/// What a run made, on stdout: "9194 tetrahedra: smallest dihedral angle 18 degrees, mean ratio 0.886".
+inline void tell_cells(Index count, const std::string& cells, const std::string& quality) {
+  std::printf("%d %s: %s\n", static_cast<int>(count), cells.c_str(), quality.c_str());
+}
+inline void tell_cells(Index tetrahedra, double dihedral_degrees, double ratio) {
+  tell_cells(tetrahedra, "tetrahedra",
+             "smallest dihedral angle " + short_text(dihedral_degrees) + " degrees, mean ratio " +
+                 short_text(ratio));
 }
 
 /// Figures of the tetrahedra; a warning where some are flat to rounding: a solver would refuse them.
@@ -102,8 +106,7 @@ inline void tell_tetrahedra(const meshing::FillReport& r, const mesh::TetMesh& t
   j["mean_ratio"] = r.mean_ratio, j["worst_place"] = q.worst_place;
   j["surface_smallest_angle_degrees"] = r.surface_min_angle;
   j["surface_smallest_dihedral_degrees"] = r.surface_min_dihedral;
-  tell_cells(r.tetrahedra, "tetrahedra", "smallest dihedral angle " + short_text(r.min_dihedral) + " degrees",
-             r.mean_ratio);
+  tell_cells(r.tetrahedra, r.min_dihedral, r.mean_ratio);
   if (q.inverted > 0)
     warn(report, count_text(static_cast<std::size_t>(q.inverted), "tetrahedron", "tetrahedra") +
                      " flat to rounding, the flattest at " + place(q.worst_place) +

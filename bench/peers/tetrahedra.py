@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """tetrahedra.py SURFACE.off PEER [LIMIT]: fills a closed surface with a peer's tetrahedra; LIMIT in seconds (20).
 
-PEER: tetgen (tetgen -pYq1.4), gmsh (Delaunay, optimised), hxt (Gmsh's HXT, optimised), netgen (optimised). All keep
-the triangles of the surface. Prints one line: peer-version, outcome, CPU seconds of the meshing alone, tetrahedra,
-smallest dihedral angle, share of tetrahedra below 18 degrees, mean ratio, peak memory above that of an idle peer [MB].
+PEER: tetgen (tetgen -pYq1.4), gmsh (Delaunay, optimised), hxt (Gmsh's HXT, optimised), netgen (optimised), or the path
+of fill_off, which is ours. All keep the triangles of the surface. Prints one line: peer-version, outcome, CPU seconds of
+the meshing alone, tetrahedra, smallest dihedral angle, share of tetrahedra below 18 degrees, mean ratio, peak memory
+above that of an idle peer [MB].
 outcome: ok, error (it says so), crash (a signal), timeout, wrong (inverted cells, other volume, other border), absent.
 
-tetrahedra.py --table FOLDER PEER...: runs the peers on all FOLDER/<family>-<seed>.off and prints a table a family.
+tetrahedra.py --table FOLDER PEER...: runs the peers on all FOLDER/<family>-<number>.off (of soak_surfaces) and prints a
+table of their outcomes, a row a family; each run goes to stderr.
 """
 import glob
 import os
@@ -35,8 +37,26 @@ def megabytes():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
-def run_tetgen(path):
+def read_tetgen(base):
     import numpy as np
+    points = np.loadtxt(base + ".1.node", skiprows=1, comments="#", ndmin=2)
+    cells = np.loadtxt(base + ".1.ele", skiprows=1, comments="#", dtype=int, ndmin=2)
+    return points[:, 1:4], cells[:, 1:5] - int(points[0, 0])
+
+
+def run_ours(path, program):
+    with tempfile.TemporaryDirectory() as folder:
+        base = os.path.join(folder, "s")
+        done = subprocess.run([program, path, base], capture_output=True, text=True)
+        if done.returncode < 0:
+            os.kill(os.getpid(), -done.returncode)
+        if done.returncode != 0:
+            sys.exit(1)
+        figures = dict(line.split() for line in done.stdout.splitlines())
+        return "tunica", float(figures["seconds"]), *read_tetgen(base), float(figures["peak"])
+
+
+def run_tetgen(path):
     version = re.search(r"Version (\S+)", subprocess.run(["tetgen", "-h"], capture_output=True, text=True).stdout)
     # The peak of a process starts at that of the one that made it: a small one in between.
     measure = ("import os, sys; p = os.spawnvp(os.P_NOWAIT, 'tetgen', ['tetgen', '-pYq1.4', sys.argv[1]]); "
@@ -62,11 +82,8 @@ def run_tetgen(path):
         def seconds(label):
             return float(re.search(label + r" seconds:\s+(\S+)", out).group(1))
 
-        points = np.loadtxt(base + ".1.node", skiprows=1, comments="#")
-        cells = np.loadtxt(base + ".1.ele", skiprows=1, comments="#", dtype=int)
-        first = int(points[0, 0])
         return ("tetgen-" + (version.group(1) if version else "1"), seconds("Total running") - seconds("Output"),
-                points[:, 1:4], cells[:, 1:5] - first, peak[1] - peak[0])
+                *read_tetgen(base), peak[1] - peak[0])
 
 
 def run_gmsh(path, algorithm):
@@ -142,6 +159,8 @@ def child(path, peer):
             name, seconds, x, cells, peak = run_tetgen(path)
         elif peer == "netgen":
             name, seconds, x, cells, peak = run_netgen(path)
+        elif peer not in PEERS:
+            name, seconds, x, cells, peak = run_ours(path, peer)
         else:
             name, seconds, x, cells, peak = run_gmsh(path, 1 if peer == "gmsh" else 10)
             name += "-" + peer
@@ -155,7 +174,7 @@ def child(path, peer):
 
 def run(path, peer, limit):
     """The line of a peer, always: it runs in a process of its own."""
-    if peer == "tetgen" and shutil.which("tetgen") is None:
+    if shutil.which(peer) is None and (peer == "tetgen" or peer not in PEERS):
         return [peer, "absent"]
     process = subprocess.Popen([sys.executable, __file__, "--child", path, peer], stdout=subprocess.PIPE,
                                stderr=subprocess.DEVNULL, text=True, start_new_session=True)
@@ -174,12 +193,13 @@ def run(path, peer, limit):
 def table(folder, peers):
     ends = {}
     for path in sorted(glob.glob(os.path.join(folder, "*.off"))):
-        family = os.path.basename(path).rsplit("-", 1)[0]
+        family = os.path.basename(path).rsplit("-", 1)[0].replace("_", " ")
         for peer in peers:
             words = run(path, peer, 20)
             ends.setdefault(family, {}).setdefault(peer, []).append(words[1])
             print(os.path.basename(path), peer, *words[1:], file=sys.stderr, flush=True)
-    print("| family | surfaces | " + " | ".join(peers) + " |")
+    names = [peer if peer in PEERS else "tunica" for peer in peers]
+    print("| family | surfaces | " + " | ".join(names) + " |")
     print("|---" * (2 + len(peers)) + "|")
     for family, of in ends.items():
         cells = []

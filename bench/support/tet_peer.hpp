@@ -2,10 +2,10 @@
 // Tetrahedra of other programs in the same surface, run beside ours: bench/peers/tetrahedra.py.
 #pragma once
 
+#include "support/off.hpp"
 #include "support/provenance.hpp"
 #include "tunica/mesh/mesh.hpp"
 
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <sstream>
@@ -28,14 +28,7 @@ struct PeerTetrahedra {
   std::string folder = (std::filesystem::temp_directory_path() / "tunica_peer_XXXXXX").string();
   if (mkdtemp(folder.data()) == nullptr) return std::nullopt;
   const std::string path = folder + "/surface.off";
-  std::FILE* file = std::fopen(path.c_str(), "w");
-  if (file == nullptr) return std::nullopt;
-  std::fprintf(file, "OFF\n%d %d 0\n", s.node_count(), s.cell_count());
-  for (Index n = 0; n < s.node_count(); ++n)
-    std::fprintf(file, "%.17g %.17g %.17g\n", s.nodes(0, n), s.nodes(1, n), s.nodes(2, n));
-  for (Index t = 0; t < s.cell_count(); ++t)
-    std::fprintf(file, "3 %d %d %d\n", s.cells(0, t), s.cells(1, t), s.cells(2, t));
-  std::fclose(file);
+  if (!write_off(path, s)) return std::nullopt;
   std::istringstream reply(output_of(python + " '" TUNICA_SOURCE_DIR "/bench/peers/tetrahedra.py' '" + path +
                                      "' " + peer + " " + std::to_string(limit_seconds)));
   std::filesystem::remove_all(folder);
