@@ -40,6 +40,13 @@ struct Hyperelastic {
     return solid::response(isochoric, F, point);
   }
 
+  void begin_step(double dt) requires HasHistory<IsochoricLaw> { isochoric.begin_step(dt); }
+  template <class S>
+  [[nodiscard]] Point<S> advance(const Tensor<S>& F,
+                                 const Point<S>& point) const requires HasHistory<IsochoricLaw> {
+    return isochoric.advance(F, point);
+  }
+
   template <class S>
   requires(!needs_point<IsochoricLaw>) [[nodiscard]] S energy(const Tensor<S>& F) const {
     return energy(F, Point<S>{});

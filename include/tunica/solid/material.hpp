@@ -199,6 +199,29 @@ void add_volumetric(const S& slope, const S& curvature, const Tensor<S>& F, cons
     }
 }
 
+/// Whether the response of a law depends on what was before: then its points change from step to step.
+template <class Law>
+concept HasHistory = requires(Law& law, const Law& fixed, const Tensor<double>& F,
+                              const PointOf<Law, double>& point) {
+  law.begin_step(0.0);
+  { fixed.advance(F, point) } -> std::convertible_to<PointOf<Law, double>>;
+};
+
+/// Tells a law with history how long the next step is [s]; all others do not care.
+template <class Law>
+void begin_step(Law& law, double dt) {
+  if constexpr (HasHistory<Law>) law.begin_step(dt);
+}
+
+/// What a point holds at the end of a step that went to F; without history it stays as it is.
+template <class Law, class S>
+[[nodiscard]] PointOf<Law, S> advance(const Law& law, const Tensor<S>& F, const PointOf<Law, S>& point) {
+  if constexpr (HasHistory<Law>)
+    return law.advance(F, point);
+  else
+    return point;
+}
+
 template <Material Law, class S>
 requires(!needs_point<Law>) [[nodiscard]] S energy(const Law& law, const Tensor<S>& F) {
   return energy(law, F, NoPoint<S>{});
