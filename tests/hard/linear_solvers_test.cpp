@@ -2,16 +2,21 @@
 // Linear solvers on what breaks lesser ones: jumps, anisotropy, slivers, stiff volumes, null spaces, bad
 // matrices.
 #include "support/tet_operators.hpp"
-#include "tunica/la/cg.hpp"
+#include "tunica/core/units.hpp"
+#include "tunica/la/iterative.hpp"
 #include "tunica/la/multigrid.hpp"
 #include "tunica/la/preconditioner.hpp"
 #include "tunica/la/rigid_modes.hpp"
+#include "tunica/solid/laws.hpp"
+#include "tunica/solid/statics.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 using namespace tunica;
@@ -256,5 +261,82 @@ TEST_SUITE("hard") {
     Eigen::VectorXd c = b;
     c[3] = not_a_number;
     CHECK(solve_by_cg(A, M, c).report.status == Status::diverged);
+  }
+
+  TEST_CASE("la: gmres and bicgstab where the wind outweighs diffusion") {
+    const auto mesh = test::perturbed_cube(20);
+    const test::FreeNodes nodes(mesh);
+    for (const double wind : {1.0, 30.0, 300.0}) {  // times the size of the cube over its diffusivity
+      const Vec3 velocity = wind * Vec3(0.8, 0.5, 0.33);
+      const auto A =
+          test::tet_matrix<1>(mesh, nodes, [&](Index, const fem::P1Tet& tet, int a, int b, auto& out) {
+            const double along = velocity.dot(tet.grad.col(a)) * velocity.dot(tet.grad.col(b));
+            out[0] +=
+                tet.volume * (tet.grad.col(a).dot(tet.grad.col(b)) + 0.25 * velocity.dot(tet.grad.col(b)) +
+                              0.5 * tet.size() / wind * along);  // with streamline diffusion
+          });
+      const Eigen::VectorXd b = noise(A.rows());
+      la::Ilu0<> ilu;
+      ilu.compute(A);
+      la::Multigrid<> multigrid;
+      REQUIRE(multigrid.compute(A));
+      const auto check = [&](auto&& solve, const auto& M, const std::string& what, int most) {
+        Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
+        const SolveReport report = solve(la::ApplyMatrix<>{A}, M, b, x, la::KrylovOptions{.tolerance = 1e-8});
+        CHECK(report.status == Status::converged);
+        CHECK((b - A * x).norm() <= 1e-8 * b.norm());
+        CHECK(report.iterations <= most);
+        MESSAGE("wind " << wind << ": " << what << ", " << report.iterations << " iterations");
+      };
+      const auto gmres = [](const auto& op, const auto& M, const auto& c, auto& x, const auto& o) {
+        return la::gmres(op, M, c, x, o);
+      };
+      const auto bicgstab = [](const auto& op, const auto& M, const auto& c, auto& x, const auto& o) {
+        return la::bicgstab(op, M, c, x, o);
+      };
+      check(gmres, ilu, "gmres, ILU(0)", 60);
+      check(gmres, multigrid, "gmres, multigrid", wind < 100 ? 30 : 200);
+      check(bicgstab, ilu, "bicgstab, ILU(0)", 40);
+    }
+  }
+
+  TEST_CASE("la: minres past the limit where conjugate gradients end") {
+    const auto mesh = test::perturbed_cube(16);
+    auto A = test::diffusion(mesh);
+    la::Multigrid<1, 1, double> M;  // of the definite part
+    REQUIRE(M.compute(A));
+    // -Laplace - 60: below zero in the lowest modes, of eigenvalues pi^2 (i^2 + j^2 + k^2).
+    const auto mass = test::tet_matrix<1>(mesh, test::FreeNodes(mesh),
+                                          [](Index, const fem::P1Tet& tet, int a, int b, auto& out) {
+                                            out[0] += tet.volume * (a == b ? 0.1 : 0.05);
+                                          });
+    const la::RowMatrix K = A - 60 * mass;
+    const Eigen::VectorXd b = noise(K.rows());
+    CHECK(solve_by_cg(K, M, b).report.status == Status::diverged);
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
+    const auto report = la::minres(la::ApplyMatrix<>{K}, M, b, x, {.tolerance = 1e-8});
+    CHECK(report.status == Status::converged);
+    CHECK((b - K * x).norm() <= 1e-8 * b.norm());
+    CHECK(report.iterations <= 60);
+    MESSAGE(report.iterations << " iterations");
+  }
+
+  TEST_CASE("la: a solid is solved by conjugate gradients with multigrid as it is directly") {
+    using namespace tunica::literals;
+    const auto mesh = meshing::box_hexes({.cells = {16, 4, 4}, .lo = Vec3::Zero(), .hi = {4e-3, 1e-3, 1e-3}});
+    const solid::Hyperelastic law{solid::NeoHooke{.c10 = 100_kPa}, solid::Quadratic{.kappa = 2000_kPa}};
+    const auto solve = [&](auto& wall) {
+      wall.fix(mesh.patch("x0"));
+      wall.pressure(mesh.patch("z1"), 1_kPa);
+      const auto report = wall.solve();
+      CHECK(bool(report));
+      return Points<3>(wall.displacement());
+    };
+    using Law = std::decay_t<decltype(law)>;
+    solid::Statics direct{mesh, law};
+    solid::Statics<mesh::Hex8, Law, la::Cg<la::Multigrid<3>>> iterative{mesh, law};
+    const Points<3> u = solve(direct), v = solve(iterative);
+    CHECK((u - v).norm() < 1e-7 * u.norm());
+    CHECK(u.lpNorm<Eigen::Infinity>() > 1e-4);
   }
 }

@@ -5,8 +5,30 @@
 #include "tunica/la/krylov.hpp"
 
 #include <cmath>
+#include <cstddef>
 
 namespace tunica::la {
+
+namespace detail {
+
+/// x += alpha p, r -= alpha q; r . r, each chunk while it is at hand.
+inline double advance(double alpha, const Eigen::VectorXd& p, const Eigen::VectorXd& q, Eigen::VectorXd& x,
+                      Eigen::VectorXd& r) {
+  return parallel_sum(x.size(), vector_chunk, [&](std::ptrdiff_t b, std::ptrdiff_t e) {
+    x.segment(b, e - b) += alpha * p.segment(b, e - b);
+    r.segment(b, e - b) -= alpha * q.segment(b, e - b);
+    return r.segment(b, e - b).squaredNorm();
+  });
+}
+
+/// p = z + beta p.
+inline void turn(double beta, const Eigen::VectorXd& z, Eigen::VectorXd& p) {
+  parallel_chunks(p.size(), vector_chunk, [&](std::ptrdiff_t b, std::ptrdiff_t e) {
+    p.segment(b, e - b) = z.segment(b, e - b) + beta * p.segment(b, e - b);
+  });
+}
+
+}  // namespace detail
 
 /// Solves A x = b from the start x (n); A, M symmetric, M definite. The residual is the true one:
 /// when the recurrence claims convergence b - A x is evaluated, and the iteration restarts from it
@@ -36,15 +58,13 @@ SolveReport cg(const Operator& A, const Precond& M, const Eigen::VectorXd& b, Ei
         return report;
       }
       const double alpha = rz / pq;
-      x += alpha * p;
-      r -= alpha * q;
       ++k;
-      residual = norm(r);
+      residual = std::sqrt(detail::advance(alpha, p, q, x, r));
       if (residual <= watch.goal() || !std::isfinite(residual)) break;
       if (watch.done(residual, k, report)) return report;
       M.apply(r, z);
       const double next = dot(r, z);
-      p = z + (next / rz) * p;
+      detail::turn(next / rz, z, p);
       rz = next;
     }
     A.apply(x, q);

@@ -4,57 +4,96 @@
 
 #include "tunica/la/bicgstab.hpp"
 #include "tunica/la/cg.hpp"
+#include "tunica/la/gmres.hpp"
 #include "tunica/la/linear_solver.hpp"
+#include "tunica/la/minres.hpp"
 #include "tunica/la/preconditioner.hpp"
 
 #include <cmath>
+#include <concepts>
+#include <utility>
 
 namespace tunica::la {
 
 namespace detail {
 
-template <class Precond, bool Symmetric>
+enum class Krylov { cg, minres, bicgstab, gmres };
+
+/// A preconditioner that can take new values on its old pattern.
+template <class P>
+concept Refreshable = requires(P p, const RowMatrix& A) {
+  { p.refresh(A) } -> std::same_as<SolveReport>;
+};
+
+template <Krylov Method, class Precond>
 class Iterative {
  public:
-  static constexpr bool symmetric = Symmetric;
+  static constexpr bool symmetric = Method == Krylov::cg || Method == Krylov::minres;
 
-  explicit Iterative(KrylovOptions options = {}) : options_(options) {}
+  Iterative() = default;
+  explicit Iterative(KrylovOptions options, Precond preconditioner = Precond())
+      : options_(options), preconditioner_(std::move(preconditioner)) {}
 
-  void analyse(const SparseMatrix&) {}
+  /// A preconditioner that lasts as long as the pattern is made anew by the next factorise().
+  void analyse(const SparseMatrix&) { fresh_ = true; }
 
   /// `diverged` for a matrix with a NaN.
   SolveReport factorise(const SparseMatrix& A) {
-    A_ = A;
-    if constexpr (requires { preconditioner_.compute(A_); }) preconditioner_.compute(A_);
-    const bool finite = std::isfinite(A.coeffs().sum());
-    return {finite ? Status::converged : Status::diverged, 0, 0};
+    TUNICA_EXPECT(A.isCompressed(), "a solver reads compressed matrices");
+    if constexpr (symmetric)  // its columns are its rows
+      A_ = Eigen::Map<const RowMatrix>(A.rows(), A.cols(), A.nonZeros(), A.outerIndexPtr(), A.innerIndexPtr(),
+                                       A.valuePtr());
+    else
+      A_ = A;
+    if (!std::isfinite(A.coeffs().sum())) return {Status::diverged, 0, 0};
+    if constexpr (Refreshable<Precond>) {
+      const auto report = fresh_ ? preconditioner_.compute(A_) : preconditioner_.refresh(A_);
+      fresh_ = !report;
+      return report;
+    } else {
+      if constexpr (requires { preconditioner_.compute(A_); }) preconditioner_.compute(A_);
+      return {Status::converged, 0, 0};
+    }
   }
 
   /// x: the start if it has the size of b, zero otherwise.
   SolveReport solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     if (x.size() != b.size()) x = Eigen::VectorXd::Zero(b.size());
-    if constexpr (Symmetric)
-      return cg(ApplyMatrix<>{A_}, preconditioner_, b, x, options_);
-    else
-      return bicgstab(ApplyMatrix<>{A_}, preconditioner_, b, x, options_);
+    const ApplyMatrix<> A{A_};
+    if constexpr (Method == Krylov::cg) return cg(A, preconditioner_, b, x, options_);
+    if constexpr (Method == Krylov::minres) return minres(A, preconditioner_, b, x, options_);
+    if constexpr (Method == Krylov::bicgstab) return bicgstab(A, preconditioner_, b, x, options_);
+    if constexpr (Method == Krylov::gmres) return gmres(A, preconditioner_, b, x, options_);
   }
+
+  [[nodiscard]] const Precond& preconditioner() const { return preconditioner_; }
 
  private:
   KrylovOptions options_;
   RowMatrix A_;
   Precond preconditioner_;
+  bool fresh_ = true;
 };
 
 }  // namespace detail
 
 /// Conjugate gradients for symmetric positive definite matrices, both triangles stored.
 template <class Precond = IncompleteCholesky>
-using Cg = detail::Iterative<Precond, true>;
+using Cg = detail::Iterative<detail::Krylov::cg, Precond>;
+
+/// MINRES for symmetric matrices, indefinite ones too; both triangles stored, a definite preconditioner.
+template <class Precond = Identity>
+using Minres = detail::Iterative<detail::Krylov::minres, Precond>;
 
 /// BiCGStab for any regular matrix.
 template <class Precond = Ilu0<>>
-using BiCgStab = detail::Iterative<Precond, false>;
+using BiCgStab = detail::Iterative<detail::Krylov::bicgstab, Precond>;
 
-static_assert(LinearSolver<Cg<>> && LinearSolver<BiCgStab<>>);
+/// Restarted GMRES for any regular matrix: a residual that never grows, for the memory of its vectors.
+template <class Precond = Ilu0<>>
+using Gmres = detail::Iterative<detail::Krylov::gmres, Precond>;
+
+static_assert(LinearSolver<Cg<>> && LinearSolver<Minres<>> && LinearSolver<BiCgStab<>> &&
+              LinearSolver<Gmres<>>);
 
 }  // namespace tunica::la

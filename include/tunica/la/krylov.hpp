@@ -33,7 +33,8 @@ struct KrylovOptions {
   double tolerance = 1e-8;  // on |b - A x| / |b|, the true residual
   double absolute = 0;      // on |b - A x|; for a right-hand side that is itself round-off
   int max_iterations = 1000;
-  int stall = 200;  // iterations without a new smallest residual (to one part in a hundred)
+  int stall = 200;   // iterations without a new smallest residual (to one part in a hundred)
+  int restart = 50;  // vectors that GMRES keeps before it starts again
 };
 
 namespace detail {

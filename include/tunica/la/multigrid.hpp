@@ -30,7 +30,8 @@ struct MultigridOptions {
 template <int Block = 1, int Modes = Block, class Scalar = float>
 class Multigrid {
  public:
-  explicit Multigrid(MultigridOptions options = {}) : options_(options) {}
+  Multigrid() = default;
+  explicit Multigrid(MultigridOptions options) : options_(options) {}
 
   /// One column a mode: Block * nodes x Modes. Call it before compute().
   void near_null_space(const Eigen::MatrixXd& modes) {
@@ -74,6 +75,7 @@ class Multigrid {
     factorise_coarsest();
     size_ = A.rows();
     entries_ = A.nonZeros();
+    blocks_ = matrix_.view().start[matrix_.view().rows];
     return usable_report();
   }
 
@@ -116,7 +118,7 @@ class Multigrid {
   [[nodiscard]] int levels() const { return levels_; }
   /// Stored blocks of all levels' matrices, times their size, over those of the first.
   [[nodiscard]] double operator_complexity() const {
-    const auto entries = static_cast<double>(matrix_.view().start[matrix_.view().rows]) * Block * Block;
+    const auto entries = static_cast<double>(blocks_) * Block * Block;
     double sum = entries;
     for (const auto& m : matrices_) sum += static_cast<double>(m.value.size());
     return sum / entries;
@@ -225,8 +227,8 @@ class Multigrid {
   std::vector<Coarse> coarse_;                                     // those after the first
   std::vector<detail::BlockRows<double, Modes, Modes>> matrices_;  // of coarse_
   detail::DenseFactors<Scalar> factors_;
-  Eigen::Index size_ = 0, entries_ = 0;
-  double scale_ = 1;  // of the matrix, a power of two
+  Eigen::Index size_ = 0, entries_ = 0, blocks_ = 0;  // of the matrix
+  double scale_ = 1;                                  // of the matrix, a power of two
   int levels_ = 0;
   bool direct_ = false, usable_ = false;
 };

@@ -2,6 +2,7 @@
 // Preconditioners on the pattern of the matrix: Jacobi, incomplete Cholesky and LU without fill. [SAAD03, 10]
 #pragma once
 
+#include "tunica/core/expect.hpp"
 #include "tunica/la/vector_ops.hpp"
 
 #include <algorithm>
@@ -32,38 +33,24 @@ class Jacobi {
 };
 
 /// A ~ L U on the pattern of A (compressed, rows ascending, with its diagonal). The diagonal of U is
-/// kept inverted. A pivot that is not safely away from zero is replaced by the diagonal of A.
+/// kept inverted. Where a pivot is not safely away from zero all diagonals are raised by a part of the
+/// largest entry of their row, doubled until no pivot breaks down. A row of zeros is left alone.
 template <int Components = 1>
 class Ilu0 {
  public:
   void compute(const RowMatrix& A) {
-    const auto n = static_cast<std::size_t>(A.rows());
-    const int *outer = A.outerIndexPtr(), *inner = A.innerIndexPtr();
-    outer_.assign(outer, outer + n + 1);
-    inner_.assign(inner, inner + A.nonZeros());
-    value_.assign(A.valuePtr(), A.valuePtr() + A.nonZeros());
-    diagonal_.resize(n);
-    std::vector<int> place(n, -1);
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto begin = static_cast<std::size_t>(outer_[i]), end = static_cast<std::size_t>(outer_[i + 1]);
-      for (std::size_t k = begin; k < end; ++k)
-        place[static_cast<std::size_t>(inner_[k])] = static_cast<int>(k);
-      std::size_t k = begin;
-      for (; static_cast<std::size_t>(inner_[k]) < i; ++k) {
-        const auto j = static_cast<std::size_t>(inner_[k]);
-        const double l = value_[k] *= value_[diagonal_[j]];
-        for (auto m = diagonal_[j] + 1; m < static_cast<std::size_t>(outer_[j + 1]); ++m) {
-          const int p = place[static_cast<std::size_t>(inner_[m])];
-          if (p >= 0) value_[static_cast<std::size_t>(p)] -= l * value_[m];
-        }
+    outer_.assign(A.outerIndexPtr(), A.outerIndexPtr() + A.rows() + 1);
+    inner_.assign(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros());
+    diagonal_.resize(static_cast<std::size_t>(A.rows()));
+    for (shift_ = 0; !factorise(A); shift_ = shift_ == 0 ? 1e-3 : 2 * shift_)
+      if (!(shift_ < 1e3)) {  // NaN in A: leave factors that hand the NaN on
+        std::fill(value_.begin(), value_.end(), std::numeric_limits<double>::quiet_NaN());
+        return;
       }
-      diagonal_[i] = k;
-      const double original = A.valuePtr()[k];
-      if (!(std::abs(value_[k]) > 1e-3 * std::abs(original))) value_[k] = original;
-      value_[k] = 1 / value_[k];
-      for (k = begin; k < end; ++k) place[static_cast<std::size_t>(inner_[k])] = -1;
-    }
   }
+
+  /// Raise of the diagonals that was needed, relative to the largest entries of their rows; mostly 0.
+  [[nodiscard]] double shift() const { return shift_; }
 
   void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
     constexpr auto C = static_cast<std::size_t>(Components);
@@ -86,9 +73,44 @@ class Ilu0 {
   }
 
  private:
+  bool factorise(const RowMatrix& A) {
+    const std::size_t n = diagonal_.size();
+    value_.assign(A.valuePtr(), A.valuePtr() + A.nonZeros());
+    std::vector<int> place(n, -1);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto begin = static_cast<std::size_t>(outer_[i]), end = static_cast<std::size_t>(outer_[i + 1]);
+      double largest = 0;
+      for (std::size_t k = begin; k < end; ++k) {
+        place[static_cast<std::size_t>(inner_[k])] = static_cast<int>(k);
+        largest = std::max(largest, std::abs(value_[k]));
+      }
+      TUNICA_EXPECT(place[i] >= static_cast<int>(begin),
+                    "incomplete factors need every diagonal in the pattern");
+      const auto own = static_cast<std::size_t>(place[i]);
+      const double original = value_[own];
+      value_[own] += std::copysign(shift_ * largest, original);
+      std::size_t k = begin;
+      for (; static_cast<std::size_t>(inner_[k]) < i; ++k) {
+        const auto j = static_cast<std::size_t>(inner_[k]);
+        const double l = value_[k] *= value_[diagonal_[j]];
+        for (auto m = diagonal_[j] + 1; m < static_cast<std::size_t>(outer_[j + 1]); ++m) {
+          const int p = place[static_cast<std::size_t>(inner_[m])];
+          if (p >= 0) value_[static_cast<std::size_t>(p)] -= l * value_[m];
+        }
+      }
+      diagonal_[i] = k;
+      if (largest == 0) value_[k] = 1;
+      if (!(std::abs(value_[k]) > 1e-3 * std::abs(original)) || !std::isfinite(value_[k])) return false;
+      value_[k] = 1 / value_[k];
+      for (k = begin; k < end; ++k) place[static_cast<std::size_t>(inner_[k])] = -1;
+    }
+    return true;
+  }
+
   std::vector<int> outer_, inner_;
   std::vector<double> value_;
   std::vector<std::size_t> diagonal_;
+  double shift_ = 0;
 };
 
 /// A ~ L L^T on the pattern of a symmetric positive definite A. Where that pattern admits no such
@@ -130,11 +152,13 @@ class IncompleteCholesky {
     source_.clear();
     diagonal_.assign(n, 0);
     for (std::size_t i = 0; i < n; ++i) {
+      [[maybe_unused]] bool found = false;
       for (int k = A.outerIndexPtr()[i]; k < A.outerIndexPtr()[i + 1]; ++k) {
         const auto j = static_cast<std::size_t>(A.innerIndexPtr()[k]);
         if (j < i) column_.push_back(j), source_.push_back(static_cast<std::size_t>(k));
-        if (j == i) diagonal_[i] = static_cast<std::size_t>(k);
+        if (j == i) diagonal_[i] = static_cast<std::size_t>(k), found = true;
       }
+      TUNICA_EXPECT(found, "incomplete factors need every diagonal in the pattern");
       start_.push_back(column_.size());
     }
     value_.resize(column_.size());
@@ -156,7 +180,8 @@ class IncompleteCholesky {
         pivot -= value_[k] * value_[k];
       }
       for (std::size_t k = start_[i]; k < start_[i + 1]; ++k) row[column_[k]] = 0;
-      if (!(pivot > 1e-3 * a[diagonal_[i]])) return false;
+      if (pivot == 0 && a[diagonal_[i]] == 0) pivot = 1;  // a row of zeros is left alone
+      if (!(pivot > 1e-3 * a[diagonal_[i]]) || !(pivot > 0)) return false;
       inverse_[i] = 1 / std::sqrt(pivot);
     }
     return true;
