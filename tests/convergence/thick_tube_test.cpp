@@ -2,10 +2,12 @@
 #include "support/thick_tube.hpp"
 #include "tunica/meshing/tube.hpp"
 #include "tunica/solid/laws.hpp"
+#include "tunica/solid/output.hpp"
 #include "tunica/solid/statics.hpp"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -94,5 +96,58 @@ TEST_SUITE("convergence") {
                               << order);
       if (k > 1) CHECK(order == doctest::Approx(2).epsilon(0.1));
     }
+  }
+
+  TEST_CASE("solid: thick tube within a tenth of a percent and its stresses are recovered at the surfaces") {
+    const test::ThickTube tube;
+    const double l = 1.10, p = tube.pressure(l);
+    std::vector<double> recovered, averaged;
+    for (const int n : {2, 4, 8, 16}) {
+      const auto mesh = meshing::quarter_tube({.inner_radius = tube.inner,
+                                               .thickness = tube.outer - tube.inner,
+                                               .length = 1e-3,
+                                               .cells = {n, 4 * n, 1}});
+      solid::Statics wall{mesh, solid::Hyperelastic{solid::Yeoh{.c10 = tube.c10, .c20 = tube.c20},
+                                                    solid::Quadratic{.kappa = 1e5 * 2 * tube.c10}}};
+      wall.fix(mesh.patch("ends"), solid::Axis::z);
+      wall.fix(mesh.patch("sym_x"), solid::Axis::x);
+      wall.fix(mesh.patch("sym_y"), solid::Axis::y);
+      wall.pressure(mesh.patch("inner"), p);
+      REQUIRE(wall.solve());
+      const auto reached = wall.displacement();
+      if (n == 4) {
+        const Index node = mesh.patch("inner").faces(0, 0);
+        const double stretch = (mesh.nodes + reached).col(node).head<2>().norm() / tube.inner;
+        MESSAGE("4 cells: pressure at the reached stretch off by " << 100 * (tube.pressure(stretch) / p - 1)
+                                                                   << " %");
+        CHECK(std::abs(tube.pressure(stretch) / p - 1) < 1e-3);
+      }
+      // The largest error of s_rr, s_tt and s_zz at the nodes of both surfaces.
+      const auto error = [&](const solid::StressField& sigma) {
+        double worst = 0;
+        for (const char* patch : {"inner", "outer"})
+          for (const Index k : mesh::patch_nodes(mesh.patch(patch))) {
+            const Vec3 X = mesh.nodes.col(k);
+            const double R = X.head<2>().norm(), c = X[0] / R, s = X[1] / R;
+            const double r = std::sqrt(R * R + (l * l - 1) * tube.inner * tube.inner);
+            const auto exact = tube.stress_at(r, l);
+            const auto at = sigma.col(k);
+            worst = std::max({worst, std::abs(c * c * at[0] + s * s * at[1] + 2 * c * s * at[3] - exact.rr),
+                              std::abs(s * s * at[0] + c * c * at[1] - 2 * c * s * at[3] - exact.tt),
+                              std::abs(at[2] - exact.zz)});
+          }
+        return worst / tube.stress_at(l * tube.inner, l).tt;
+      };
+      recovered.push_back(error(solid::nodal_fields(wall.body(), wall.unknowns()).cauchy));
+      averaged.push_back(error(solid::nodal_stress(wall.body(), wall.unknowns())));
+      MESSAGE(n << " cells: nodal stresses off by " << 100 * recovered.back()
+                << " % of the largest, averaged ones by " << 100 * averaged.back() << " %");
+    }
+    for (std::size_t k = 1; k < recovered.size(); ++k)
+      MESSAGE("order " << std::log2(recovered[k - 1] / recovered[k]) << ", averaged "
+                       << std::log2(averaged[k - 1] / averaged[k]));
+    CHECK(std::log2(recovered[2] / recovered[3]) > 1.7);
+    CHECK(recovered[2] < 0.02);
+    CHECK(recovered[2] < 0.3 * averaged[2]);
   }
 }

@@ -36,6 +36,18 @@ struct ThickTube {
       sum += (k == 0 || k == n ? 1 : k % 2 ? 4 : 2) * integrand(a + (b - a) * k / n);
     return sum * (b - a) / (3 * n);
   }
+  /// Cauchy stresses at the deformed radius r for an inner stretch [Pa]: s_rr = -p of what lies outside r,
+  /// s_tt = s_rr + 2 W1 (l^2 - l^-2) and s_zz = s_rr + 2 W1 (1 - l^-2) with W1 = dPhi/dI1.
+  struct Stress {
+    double rr, tt, zz;
+  };
+  Stress stress_at(double r, double inner_stretch) const {
+    const double a = inner_stretch * inner, R = std::sqrt(r * r - a * a + inner * inner), l = r / R,
+                 s = l * l;
+    const double rr = -ThickTube{.inner = R, .outer = outer, .c10 = c10, .c20 = c20}.pressure(l);
+    const double two_W1 = 2 * (c10 + 2 * c20 * (s + 1 / s - 2));
+    return {rr, rr + two_W1 * (s - 1 / s), rr + two_W1 * (1 - 1 / s)};
+  }
   /// The inner stretch at a pressure, by bisection.
   double stretch(double p) const {
     double low = 1, high = 3;

@@ -8,21 +8,22 @@
 #include "tunica/la/linear_solver.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/patch_nodes.hpp"
+#include "tunica/solid/cell_laws.hpp"
+#include "tunica/solid/cell_mass.hpp"
 #include "tunica/solid/mean_dilatation.hpp"
 #include "tunica/solid/pressure_load.hpp"
+#include "tunica/solid/robin.hpp"
 
 #include <Eigen/Core>
 
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace tunica::solid {
-
-enum class Mass { consistent, lumped };  // lumped: row sums
 
 /// A component of the displacement.
 enum class Axis { x, y, z };
@@ -45,16 +46,29 @@ class Body {
   /// Nodes in [m], density in [kg/m3]. MeshError names the first cell that is inverted as it is given.
   Body(const mesh::Mesh<C, 3>& mesh, const Material& material, double density, Mass mass)
       : mesh_(mesh),
-        material_(material),
+        laws_(material, mesh_.region, mesh_.cell_count()),
         assembly_(mesh_),
         fixed_(static_cast<std::size_t>(3 * mesh_.node_count()), 0),
         cells_(static_cast<std::size_t>(mesh_.cell_count())) {
     element_mass_.reserve(static_cast<std::size_t>(mesh_.cell_count()));
-    for (Index e = 0; e < mesh_.cell_count(); ++e) element_mass_.push_back(mass_of(e, density, mass));
+    for (Index e = 0; e < mesh_.cell_count(); ++e)
+      element_mass_.push_back(cell_mass<C>(e, reference(e), density, mass));
   }
 
   [[nodiscard]] const mesh::Mesh<C, 3>& mesh() const { return mesh_; }
-  [[nodiscard]] const Material& material() const { return material_; }
+  /// The laws, what they read at the points of the cells, and a stored deformation.
+  using Laws = CellLaws<std::remove_const_t<Material>, Element::points>;
+  [[nodiscard]] const Laws& laws() const { return laws_; }
+  [[nodiscard]] Laws& laws() { return laws_; }
+  [[nodiscard]] const Material& material(Index cell) const { return laws_.material(cell); }
+  [[nodiscard]] auto data(Index cell) const { return laws_.data(cell); }
+  /// field(cell, x) at every point x of the quadrature [m], for laws that read data there (fibres).
+  template <class Field>
+  void point_field(const Field& field) {
+    for (Index e = 0; e < mesh_.cell_count(); ++e)
+      for (std::size_t q = 0; q < Element::points; ++q)
+        laws_.point_data(e, q, field(e, Element::position(reference(e), q)));
+  }
   [[nodiscard]] Index unknowns() const { return 3 * mesh_.node_count(); }
   [[nodiscard]] la::SparseMatrix pattern() const { return assembly_.matrix(); }
 
@@ -75,6 +89,12 @@ class Body {
     return pressures_.size() - 1;
   }
 
+  /// Adds springs and dashpots on a patch: see Support.
+  void add_support(const Patch& patch, const Support& support) {
+    supports_.emplace_back(mesh_, patch, support);
+  }
+  [[nodiscard]] bool supported() const { return !supports_.empty(); }
+
   /// f = internal forces at displacement u [N]. False if a cell has J <= 0 or NaN: see inverted_cell().
   /// `step`: how far u is along the last direction(), or la::no_step; f_predicted is f with
   /// the pressures predicted along that step in place of U'(theta).
@@ -83,7 +103,7 @@ class Body {
     f.setZero(unknowns());
     f_predicted.setZero(unknowns());
     assembly_.for_each_cell([&](Index e) {
-      const auto element = Element::forces(material_, reference(e), gather(e, u));
+      const auto element = Element::forces(material(e), reference(e), gather(e, u), data(e));
       CellState& cell = cells_[static_cast<std::size_t>(e)];
       cell.smallest_J = element.smallest_J;
       cell.volume_slope = element.volume_slope;
@@ -139,10 +159,36 @@ class Body {
     }
   }
 
-  /// What a tangent is made of: A = stiffness (K(u) - dF_p/du) + mass M.
+  /// The cavity behind a patch of add_pressure: the cones from an apex to its faces. That is the volume
+  /// enclosed if the patch is closed or its border lies in planes through the apex, else this volume and
+  /// a constant where the border is held. slope: its derivative, 3 * nodes [m2].
+  struct Cavity {
+    double volume = 0;  // [m3]
+    Eigen::VectorXd slope;
+  };
+  [[nodiscard]] Cavity cavity(std::size_t number, const Eigen::VectorXd& u, const Vec3& apex) const {
+    Cavity cavity{.slope = Eigen::VectorXd::Zero(unknowns())};
+    const auto& patch = pressures_[number];
+    for (Index face = 0; face < patch.face_count(); ++face) {  // its normals point into the cavity
+      const Index e = patch.cell(face);
+      const auto cone = patch.cone(face, reference(e) + gather(e, u), apex);
+      cavity.volume -= cone.volume;
+      assembly_.add(e, (-cone.slope).eval(), cavity.slope);
+    }
+    return cavity;
+  }
+
+  /// f += S(spring) u + S(dashpot) v, the forces of the supports on what holds them [N].
+  void add_support_forces(const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& f) const {
+    for (const auto& support : supports_) support.add_forces(u, v, f);
+  }
+
+  /// What a tangent is made of: A = stiffness (K(u) + S(spring) - dF_p/du) + damping S(dashpot)
+  /// + mass M.
   struct TangentParts {
     double stiffness = 1;        // factor of the derivative of internal and pressure forces
     double mass = 0;             // factor of the mass matrix
+    double damping = 0;          // factor of the dashpots
     bool symmetric_load = true;  // the load stiffness is replaced by its symmetric part
   };
 
@@ -152,8 +198,8 @@ class Body {
                la::SparseMatrix& A) const {
     assembly_.clear(A);
     assembly_.for_each_cell([&](Index e) {
-      auto K = Element::tangent(material_, reference(e), gather(e, u),
-                                cells_[static_cast<std::size_t>(e)].predicted)
+      auto K = Element::tangent(material(e), reference(e), gather(e, u),
+                                cells_[static_cast<std::size_t>(e)].predicted, data(e))
                    .stiffness;
       K *= parts.stiffness;
       if (parts.mass != 0) {
@@ -176,14 +222,22 @@ class Body {
         scatter(e, K, 0, A);
       }
     }
+    for (const auto& support : supports_)
+      support.for_each_stiffness(parts.stiffness, parts.damping,
+                                 [&](Index e, ElementMatrix& K) { scatter(e, K, 0, A); });
   }
 
-  /// Strain energy [J] at u, and kinetic energy at velocity v.
+  /// Strain energy [J] at u, that of the springs, and kinetic energy at velocity v.
   [[nodiscard]] double strain_energy(const Eigen::VectorXd& u) const {
     double sum = 0;
     for (Index e = 0; e < mesh_.cell_count(); ++e)
-      sum += Element::energy(material_, reference(e), gather(e, u));
+      sum += Element::energy(material(e), reference(e), gather(e, u), data(e));
     return sum;
+  }
+  [[nodiscard]] double spring_energy(const Eigen::VectorXd& u) const {
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(unknowns());
+    add_support_forces(u, Eigen::VectorXd::Zero(unknowns()), f);
+    return 0.5 * u.dot(f);
   }
   [[nodiscard]] double kinetic_energy(const Eigen::VectorXd& v) const {
     Eigen::VectorXd momentum = Eigen::VectorXd::Zero(unknowns());
@@ -224,27 +278,12 @@ class Body {
     assembly_.add(e, K, A);
   }
 
-  // m_ab = int rho N_a N_b dV
-  NodePairs mass_of(Index e, double density, Mass kind) const {
-    using Rule = fem::Gauss<C, C::nodes == 8 ? 3 : 2>;
-    using Tables = fem::Tables<fem::Lagrange<C>, Rule>;
-    const Nodal X = reference(e);
-    NodePairs m = NodePairs::Zero();
-    for (std::size_t q = 0; q < Rule::size; ++q) {
-      const double det = fem::map_point<double, 3>(X, Tables::gradients[q]).det;
-      if (!(det > 0)) throw MeshError("solid: cell " + std::to_string(e) + " is inverted as it is given");
-      const Eigen::Map<const Eigen::Matrix<double, C::nodes, 1>> N(Tables::values[q].data());
-      m += density * det * Rule::weights[q] * N * N.transpose();
-    }
-    if (kind == Mass::lumped) m = NodePairs(m.rowwise().sum().asDiagonal());
-    return m;
-  }
-
   mesh::Mesh<C, 3> mesh_;
-  Material material_;
+  Laws laws_;
   fem::Assembly<C, 3> assembly_;
   std::vector<char> fixed_;
   std::vector<PressureLoad<C>> pressures_;
+  std::vector<RobinSupport<C>> supports_;
   std::vector<NodePairs> element_mass_;  // of one component [kg]
   std::vector<CellState> cells_;
   Index inverted_cell_ = -1;

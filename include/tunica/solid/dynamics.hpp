@@ -6,6 +6,7 @@
 #include "tunica/la/direct.hpp"
 #include "tunica/la/newton.hpp"
 #include "tunica/la/time_scheme.hpp"
+#include "tunica/solid/dynamics_options.hpp"
 #include "tunica/solid/stress.hpp"
 
 #include <Eigen/Core>
@@ -16,16 +17,8 @@
 
 namespace tunica::solid {
 
-struct DynamicsOptions {
-  la::GeneralizedAlpha scheme{.rho_inf = 0.5};
-  Mass mass = Mass::consistent;
-  /// The tangent of the first iteration after save() serves as long as each iteration with it takes
-  /// the residual down fourfold (a factorisation costs as much as 6 to 15 iterations, measured at
-  /// 1,000 and 3,000 cells); refresh_above = 0 is Newton's method proper.
-  la::NewtonOptions newton{.refresh_above = 0.25};
-};
-
-/// M a + f_int(u) = f, from t^n to t^{n+1} with any dt from step to step. Loads are those at t^{n+1}.
+/// M a + f_int(u) + supports = f, from t^n to t^{n+1} with any dt from step to step. Loads are those at
+/// t^{n+1}.
 ///   Dynamics wall{mesh, Hyperelastic{Yeoh{...}, Quadratic{...}}, 1100.0};
 ///   wall.fix(mesh.patch("ends"));  wall.interface(mesh.patch("inner"));
 ///   wall.save();                                     // t^n
@@ -38,8 +31,13 @@ class Dynamics {
   /// Nodes in [m], density in [kg/m3]; at rest, unloaded.
   Dynamics(const mesh::Mesh<C, 3>& mesh, const Material& material, double density,
            DynamicsOptions options = {})
+      : Dynamics(mesh, material, density, options.scheme, options) {}
+  /// With another scheme than that of the options: la::Newmark{}.
+  template <la::SecondOrderScheme Scheme>
+  Dynamics(const mesh::Mesh<C, 3>& mesh, const Material& material, double density, const Scheme& scheme,
+           DynamicsOptions options = {})
       : body_(mesh, material, density, options.mass),
-        scheme_(options.scheme.second_order()),
+        scheme_(scheme.second_order()),
         newton_(options.newton) {
     TUNICA_EXPECT(density > 0, "dynamics needs a mass");
     for (auto* v : {&state_.u, &state_.v, &state_.a, &state_.f, &load_})
@@ -56,7 +54,16 @@ class Dynamics {
     for (const Index n : nodes) body_.fix(n, axis);
   }
 
-  /// The patch that meets the fluid; its nodes, ascending, number the columns of load and displacement.
+  /// Laws of regions, fibres, a stored prestress: laws().material(region, law) and so on.
+  [[nodiscard]] auto& laws() { return body_.laws(); }
+  template <class Field>
+  void point_field(const Field& field) {
+    body_.point_field(field);
+  }
+  /// Springs and dashpots on a patch, relaxed in the reference.
+  void support(const Patch& patch, const Support& support) { body_.add_support(patch, support); }
+
+  /// The patch that meets the fluid; its nodes, ascending, are the columns of load and displacement.
   void interface(const Patch& patch) { interface_nodes_ = mesh::patch_nodes(patch); }
   [[nodiscard]] const std::vector<Index>& interface_nodes() const { return interface_nodes_; }
 
@@ -94,6 +101,7 @@ class Dynamics {
     inverted_cell_ = body_.inverted_cell();
     if (!admissible) return {Status::diverged, 0, 0};
     body_.add_pressure_forces(state_.u, pressure_, external);
+    body_.add_support_forces(state_.u, state_.v, f);
     external -= f;
     body_.clear_fixed(external);
     la::SparseMatrix M = body_.pattern();
@@ -120,8 +128,9 @@ class Dynamics {
     restored_ = false;
     iterate_dt_ = 0;
     if (!report) return report.solve;
-    const Eigen::VectorXd a = problem.acceleration(u);
-    state_.v += dt * ((1 - scheme_.gamma) * state_.a + scheme_.gamma * a);
+    before_ = {.u = state_.u, .v = state_.v};
+    const Eigen::VectorXd v = problem.velocity(u), a = problem.acceleration(u);
+    state_.v = v;
     state_.a = a;
     state_.u = u;
     state_.f = load_;
@@ -148,13 +157,9 @@ class Dynamics {
   [[nodiscard]] Points<3> displacement() const { return at_interface(state_.u); }
   [[nodiscard]] Points<3> velocity() const { return at_interface(state_.v); }
   /// All nodes: 3 x nodes [m], [m/s], [m/s2].
-  [[nodiscard]] Points<3> nodal_displacement() const {
-    return state_.u.reshaped(3, body_.mesh().node_count());
-  }
-  [[nodiscard]] Points<3> nodal_velocity() const { return state_.v.reshaped(3, body_.mesh().node_count()); }
-  [[nodiscard]] Points<3> nodal_acceleration() const {
-    return state_.a.reshaped(3, body_.mesh().node_count());
-  }
+  [[nodiscard]] Points<3> nodal_displacement() const { return at_nodes(state_.u); }
+  [[nodiscard]] Points<3> nodal_velocity() const { return at_nodes(state_.v); }
+  [[nodiscard]] Points<3> nodal_acceleration() const { return at_nodes(state_.a); }
 
   /// Von Mises stress of the Cauchy stress, one number a cell or node [Pa].
   [[nodiscard]] Eigen::VectorXd cell_von_mises() const { return von_mises(cell_stress(body_, state_.u)); }
@@ -162,6 +167,23 @@ class Dynamics {
 
   [[nodiscard]] double strain_energy() const { return body_.strain_energy(state_.u); }    // [J]
   [[nodiscard]] double kinetic_energy() const { return body_.kinetic_energy(state_.v); }  // [J]
+
+  /// Of the last step that held.
+  [[nodiscard]] EnergyBalance energy_balance() const {
+    EnergyBalance e;
+    if (before_.u.size() == 0) return e;
+    const Eigen::VectorXd du = state_.u - before_.u, none = Eigen::VectorXd::Zero(du.size());
+    const Eigen::VectorXd v_af = before_.v + scheme_.af * (state_.v - before_.v);
+    Eigen::VectorXd damping = none;
+    body_.add_support_forces(none, v_af, damping);
+    e.external = external_.dot(du);
+    e.dashpots = damping.dot(du);
+    e.kinetic = body_.kinetic_energy(state_.v) - body_.kinetic_energy(before_.v);
+    e.strain = body_.strain_energy(state_.u) - body_.strain_energy(before_.u);
+    e.springs = body_.spring_energy(state_.u) - body_.spring_energy(before_.u);
+    e.scheme = e.external - e.kinetic - e.strain - e.springs - e.dashpots;
+    return e;
+  }
 
   /// Of the last step: Newton's history; the cell with J <= 0 on which it failed, else -1.
   [[nodiscard]] const la::NewtonReport& last() const { return last_; }
@@ -185,7 +207,7 @@ class Dynamics {
 
  private:
   struct State {
-    Eigen::VectorXd u, v, a, f, p;  // f, p: loads at t^n
+    Eigen::VectorXd u, v, a{}, f{}, p{};  // f, p: loads at t^n
   };
 
   struct Problem {
@@ -197,11 +219,15 @@ class Dynamics {
       const double beta = d.scheme_.beta;
       return (u - n.u - dt * n.v) / (beta * dt * dt) - (0.5 - beta) / beta * n.a;
     }
+    [[nodiscard]] Eigen::VectorXd velocity(const Eigen::VectorXd& u) const {
+      const State& n = d.state_;
+      return n.v + dt * ((1 - d.scheme_.gamma) * n.a + d.scheme_.gamma * acceleration(u));
+    }
     [[nodiscard]] Eigen::VectorXd between(const Eigen::VectorXd& old, const Eigen::VectorXd& now) const {
       return old + d.scheme_.af * (now - old);
     }
 
-    // r = M a^{n+am} + f_int(u^{n+af}) - f^{n+af}
+    // r = M a^{n+am} + f_int(u^{n+af}) + S(u^{n+af}, v^{n+af}) - f^{n+af}
     la::ResidualInfo residual(const Eigen::VectorXd& u, Eigen::VectorXd& r, double step) {
       const State& n = d.state_;
       const Eigen::VectorXd u_af = between(n.u, u), a_am = n.a + d.scheme_.am * (acceleration(u) - n.a);
@@ -211,6 +237,7 @@ class Dynamics {
       d.inertia_.setZero(r.size());
       d.body_.add_inertia(a_am, 1, d.inertia_);
       const double scale = std::hypot(r.norm(), d.external_.norm(), d.inertia_.norm());
+      if (d.body_.supported()) d.body_.add_support_forces(u_af, between(n.v, velocity(u)), d.inertia_);
       for (auto* v : {&r, &d.predicted_}) {
         *v += d.inertia_ - d.external_;
         d.body_.clear_fixed(*v);
@@ -225,12 +252,16 @@ class Dynamics {
       d.body_.tangent(between(d.state_.u, u), between(d.state_.p, d.pressure_),
                       {.stiffness = d.scheme_.af,
                        .mass = d.scheme_.am / (d.scheme_.beta * dt * dt),
+                       .damping = d.scheme_.af * d.scheme_.gamma / (d.scheme_.beta * dt),
                        .symmetric_load = Solver::symmetric},
                       A);
     }
     [[nodiscard]] la::SparseMatrix pattern() const { return d.body_.pattern(); }
   };
 
+  [[nodiscard]] Points<3> at_nodes(const Eigen::VectorXd& x) const {
+    return x.reshaped(3, body_.mesh().node_count());
+  }
   [[nodiscard]] Points<3> at_interface(const Eigen::VectorXd& x) const {
     Points<3> y(3, static_cast<Eigen::Index>(interface_nodes_.size()));
     for (std::size_t k = 0; k < interface_nodes_.size(); ++k)
@@ -241,7 +272,7 @@ class Dynamics {
   Body<C, Material> body_;
   la::SecondOrder scheme_;
   la::Newton<Solver> newton_;
-  State state_, saved_;
+  State state_, saved_, before_;
   Eigen::VectorXd load_, pressure_;  // at t^{n+1}
   Eigen::VectorXd iterate_;          // u^{n+1} of the last step
   double iterate_dt_ = 0;            // its dt; 0: there is none
@@ -255,5 +286,9 @@ template <mesh::Cell C, class Material>
 Dynamics(const mesh::Mesh<C, 3>&, const Material&, double) -> Dynamics<C, Material>;
 template <mesh::Cell C, class Material>
 Dynamics(const mesh::Mesh<C, 3>&, const Material&, double, DynamicsOptions) -> Dynamics<C, Material>;
+template <mesh::Cell C, class Material, la::SecondOrderScheme Scheme>
+Dynamics(const mesh::Mesh<C, 3>&, const Material&, double, Scheme) -> Dynamics<C, Material>;
+template <mesh::Cell C, class Material, la::SecondOrderScheme Scheme>
+Dynamics(const mesh::Mesh<C, 3>&, const Material&, double, Scheme, DynamicsOptions) -> Dynamics<C, Material>;
 
 }  // namespace tunica::solid

@@ -2,8 +2,9 @@
 // The three-field element Q1-P0-J0 of [SIMO85, SIMO91], condensed exactly: forces, tangent, energy.
 #pragma once
 
+#include "tunica/core/types.hpp"
 #include "tunica/fem/geometry.hpp"
-#include "tunica/solid/isochoric.hpp"
+#include "tunica/solid/cell_data.hpp"
 #include "tunica/solid/volumetric.hpp"
 
 #include <Eigen/Core>
@@ -36,31 +37,36 @@ struct ElementTangent : ElementForces<S, N> {
 /// Newton on (u, theta, p) differs from Newton on u alone in one thing: the geometric part of its
 /// tangent has the pressure that the last step predicts, p + U'' dv.du/V, not U'(theta(u)), which for
 /// large kappa is nonsense until u has converged. So `tangent` takes that pressure.
-/// X: nodes of the reference shape, u: displacements, both 3 x nodes [m].
+/// X: nodes of the reference shape, u: displacements, both 3 x nodes [m]. With a prestress F_p in `data`
+/// the reference carries it: F = (1 + du/dX) F_p, and V, energies and weights are those of the body free
+/// of stress, F_p^-1 away.
 template <mesh::Cell C, class Rule>
 struct MeanDilatation {
   static constexpr int nodes = C::nodes, size = 3 * C::nodes, points = Rule::size;
   template <class S>
   using Nodal = Eigen::Matrix<S, 3, nodes>;
+  template <class Material>
+  using Data = CellData<decltype(Material::isochoric)>;
 
   /// The strain energy Pi(u) [J]; NaN or nonsense if some J <= 0.
   template <class Material, class S>
-  [[nodiscard]] static S energy(const Material& material, const Nodal<S>& X, const Nodal<S>& u) {
-    const Kinematics<S> k(X, u);
+  [[nodiscard]] static S energy(const Material& material, const Nodal<S>& X, const Nodal<S>& u,
+                                const Data<Material>& data = {}) {
+    const Kinematics<S> k(X, u, data.prestress);
     S sum = k.volume * material.volumetric.energy(k.theta);
     for (std::size_t q = 0; q < points; ++q)
-      sum += k.weight[q] * isochoric_energy(material.isochoric, k.F[q], k.J[q]);
+      sum += k.weight[q] * energy_at(material.isochoric, data, q, k.F[q], k.J[q]);
     return sum;
   }
 
   template <class Material, class S>
   [[nodiscard]] static ElementForces<S, size> forces(const Material& material, const Nodal<S>& X,
-                                                     const Nodal<S>& u) {
-    const Kinematics<S> k(X, u);
+                                                     const Nodal<S>& u, const Data<Material>& data = {}) {
+    const Kinematics<S> k(X, u, data.prestress);
     ElementForces<S, size> out;
     start(material, k, out);
     for (std::size_t q = 0; q < points; ++q)
-      add_forces(k, q, isochoric_stress(material.isochoric, k.F[q], k.J[q]), out);
+      add_forces(k, q, stress_at(material.isochoric, data, q, k.F[q], k.J[q]), out);
     out.force += out.p * out.volume_slope;
     return out;
   }
@@ -68,15 +74,28 @@ struct MeanDilatation {
   /// The exact tangent: p = U'(theta) in every part.
   template <class Material, class S>
   [[nodiscard]] static ElementTangent<S, size> tangent(const Material& material, const Nodal<S>& X,
-                                                       const Nodal<S>& u) {
-    const Kinematics<S> k(X, u);
-    return tangent_at(material, k, material.volumetric.slope(k.theta));
+                                                       const Nodal<S>& u, const Data<Material>& data = {}) {
+    const Kinematics<S> k(X, u, data.prestress);
+    return tangent_at(material, data, k, material.volumetric.slope(k.theta));
   }
   /// The same with the pressure p [Pa] in the geometric part.
   template <class Material, class S>
   [[nodiscard]] static ElementTangent<S, size> tangent(const Material& material, const Nodal<S>& X,
-                                                       const Nodal<S>& u, const S& p) {
-    return tangent_at(material, Kinematics<S>(X, u), p);
+                                                       const Nodal<S>& u, const S& p,
+                                                       const Data<Material>& data = {}) {
+    return tangent_at(material, data, Kinematics<S>(X, u, data.prestress), p);
+  }
+
+  /// Where its points lie [m].
+  [[nodiscard]] static Vec3 position(const Nodal<double>& X, std::size_t q) {
+    Vec3 x = Vec3::Zero();
+    for (int a = 0; a < nodes; ++a) x += Tables::values[q][static_cast<std::size_t>(a)] * X.col(a);
+    return x;
+  }
+  /// (1 + du/dX) at the points: what a prestress stores.
+  [[nodiscard]] static std::array<Eigen::Matrix3d, static_cast<std::size_t>(points)> deformation(
+      const Nodal<double>& X, const Nodal<double>& u) {
+    return Kinematics<double>(X, u, nullptr).F;
   }
 
   /// Cauchy stress at the points [Pa], the pressure of the element included; a column a point.
@@ -85,13 +104,13 @@ struct MeanDilatation {
     std::array<double, static_cast<std::size_t>(points)> volume;  // current, of each point [m3]
   };
   template <class Material>
-  [[nodiscard]] static Stress stress(const Material& material, const Nodal<double>& X,
-                                     const Nodal<double>& u) {
-    const Kinematics<double> k(X, u);
+  [[nodiscard]] static Stress stress(const Material& material, const Nodal<double>& X, const Nodal<double>& u,
+                                     const Data<Material>& data = {}) {
+    const Kinematics<double> k(X, u, data.prestress);
     Stress out;
     for (std::size_t q = 0; q < points; ++q) {
       // sigma = p 1 + tau / J   [PEREZ08, (5)]
-      Symmetric<double> sigma = isochoric_stress(material.isochoric, k.F[q], k.J[q]) / k.J[q];
+      Symmetric<double> sigma = stress_at(material.isochoric, data, q, k.F[q], k.J[q]) / k.J[q];
       for (int i = 0; i < 3; ++i) sigma[i] += material.volumetric.slope(k.theta);
       out.sigma.col(static_cast<int>(q)) = sigma;
       out.volume[q] = k.weight[q] * k.J[q];
@@ -104,22 +123,26 @@ struct MeanDilatation {
 
   template <class S>
   struct Kinematics {
-    std::array<Eigen::Matrix<S, 3, 3>, points> F;  // F = 1 + du/dX
+    std::array<Eigen::Matrix<S, 3, 3>, points> F;  // F = (1 + du/dX) F_p
     std::array<Nodal<S>, points> gradient;         // dN_a/dx
-    std::array<S, points> J, weight;               // weight: reference volume of the point
+    std::array<S, points> J, weight;               // weight: volume of the point free of stress
     S volume, theta, smallest_J;
 
-    Kinematics(const Nodal<S>& X, const Nodal<S>& u) : volume(0), theta(0) {
+    Kinematics(const Nodal<S>& X, const Nodal<S>& u, const Eigen::Matrix3d* prestress) : volume(0), theta(0) {
       for (std::size_t q = 0; q < points; ++q) {
         const auto map = fem::map_point<S, 3>(X, Tables::gradients[q]);
         F[q] = u * map.gradient.transpose();
         for (int i = 0; i < 3; ++i) F[q](i, i) += S(1);
-        J[q] = F[q].determinant();
-        weight[q] = map.det * S(Rule::weights[q]);
-        volume += weight[q];
-        theta += weight[q] * J[q];
         const Eigen::Matrix<S, 3, 3> inverse = F[q].inverse();
         gradient[q] = inverse.transpose() * map.gradient;
+        weight[q] = map.det * S(Rule::weights[q]);
+        if (prestress != nullptr) {
+          F[q] = (F[q] * prestress[q].template cast<S>()).eval();
+          weight[q] *= S(1 / prestress[q].determinant());
+        }
+        J[q] = F[q].determinant();
+        volume += weight[q];
+        theta += weight[q] * J[q];
         using std::min;
         smallest_J = q == 0 ? J[q] : min(smallest_J, J[q]);
       }
@@ -156,12 +179,13 @@ struct MeanDilatation {
   }
 
   template <class Material, class S>
-  static ElementTangent<S, size> tangent_at(const Material& material, const Kinematics<S>& k, const S& p) {
+  static ElementTangent<S, size> tangent_at(const Material& material, const Data<Material>& data,
+                                            const Kinematics<S>& k, const S& p) {
     ElementTangent<S, size> out;
     start(material, k, out);
     out.stiffness.setConstant(S(0));
     for (std::size_t q = 0; q < points; ++q) {
-      auto response = isochoric_response(material.isochoric, k.F[q], k.J[q]);
+      auto response = response_at(material.isochoric, data, q, k.F[q], k.J[q]);
       add_forces(k, q, response.tau, out);
       // p J (grad Na x grad Nb - grad Nb x grad Na) is the modulus p J (1 x 1 - 2 Id) and stress p J 1.
       const S pJ = p * k.J[q];

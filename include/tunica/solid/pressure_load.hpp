@@ -2,19 +2,14 @@
 // A pressure that follows the deformed surface, with its load stiffness   [BONET08, ch. 8.5 and 9.4].
 #pragma once
 
-#include "tunica/core/error.hpp"
 #include "tunica/core/types.hpp"
 #include "tunica/fem/geometry.hpp"
-#include "tunica/mesh/adjacency.hpp"
-#include "tunica/mesh/cells_behind.hpp"
 #include "tunica/mesh/mesh.hpp"
+#include "tunica/solid/load_faces.hpp"
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
-#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -29,21 +24,8 @@ class PressureLoad {
   using FacePoints = Eigen::Matrix<double, 3, face_nodes>;
 
   /// MeshError if a face of the patch belongs to no cell.
-  PressureLoad(const mesh::Mesh<C, 3>& mesh, const mesh::Patch<Face>& patch) {
-    const mesh::Rows around = mesh::cells_of_nodes(mesh.cells, mesh.node_count());
-    const auto behind = mesh::cells_behind(mesh.cells, around, patch.faces);
-    for (std::size_t f = 0; f < behind.size(); ++f) {
-      if (behind[f] < 0)
-        throw MeshError("patch \"" + patch.name + "\": face " + std::to_string(f) + " belongs to no cell");
-      Loaded face{.cell = behind[f], .local = {}};
-      const auto cell = mesh.cells.col(behind[f]);
-      for (int k = 0; k < face_nodes; ++k)
-        face.local[static_cast<std::size_t>(k)] = static_cast<int>(
-            std::find(cell.data(), cell.data() + C::nodes, patch.faces(k, static_cast<Eigen::Index>(f))) -
-            cell.data());
-      faces_.push_back(face);
-    }
-  }
+  PressureLoad(const mesh::Mesh<C, 3>& mesh, const mesh::Patch<Face>& patch)
+      : faces_(load_faces(mesh, patch)) {}
 
   [[nodiscard]] Index face_count() const { return static_cast<Index>(faces_.size()); }
   [[nodiscard]] Index cell(Index face) const { return faces_[static_cast<std::size_t>(face)].cell; }
@@ -53,7 +35,7 @@ class PressureLoad {
   [[nodiscard]] Eigen::Matrix<double, size, 1> unit_force(Index face,
                                                           const Eigen::Matrix<double, 3, C::nodes>& x) const {
     const auto& local = faces_[static_cast<std::size_t>(face)].local;
-    const FacePoints y = of_face(local, x);
+    const FacePoints y = face_points<C>(faces_[static_cast<std::size_t>(face)], x);
     Eigen::Matrix<double, size, 1> f = Eigen::Matrix<double, size, 1>::Zero();
     for (std::size_t q = 0; q < Rule::size; ++q) {
       const auto [t1, t2] = tangents(y, q);
@@ -69,7 +51,7 @@ class PressureLoad {
   [[nodiscard]] Eigen::Matrix<double, size, size> unit_stiffness(
       Index face, const Eigen::Matrix<double, 3, C::nodes>& x) const {
     const auto& local = faces_[static_cast<std::size_t>(face)].local;
-    const FacePoints y = of_face(local, x);
+    const FacePoints y = face_points<C>(faces_[static_cast<std::size_t>(face)], x);
     Eigen::Matrix<double, size, size> K = Eigen::Matrix<double, size, size>::Zero();
     for (std::size_t q = 0; q < Rule::size; ++q) {
       const auto [t1, t2] = tangents(y, q);
@@ -86,23 +68,47 @@ class PressureLoad {
     return K;
   }
 
- private:
-  using Rule = fem::Gauss<Face, std::is_same_v<Face, mesh::Quad4> ? 3 : 1>;  // exact: bilinear normals
-  using Tables = fem::Tables<fem::Lagrange<Face>, Rule>;
-  struct Loaded {
-    Index cell;
-    std::array<int, static_cast<std::size_t>(face_nodes)> local;  // its nodes in the cell's numbering
+  /// The volume of the cone from an apex to a face, (1/3) int (x - apex) . (x,1 x x,2) [m3], and its
+  /// derivative in the nodes of the cell [m2].
+  struct Cone {
+    double volume = 0;
+    Eigen::Matrix<double, size, 1> slope = Eigen::Matrix<double, size, 1>::Zero();
   };
+  [[nodiscard]] Cone cone(Index face, const Eigen::Matrix<double, 3, C::nodes>& x, const Vec3& apex) const {
+    const auto& local = faces_[static_cast<std::size_t>(face)].local;
+    const FacePoints y = face_points<C>(faces_[static_cast<std::size_t>(face)], x).colwise() - apex;
+    Cone cone;
+    for (std::size_t q = 0; q < VolumeRule::size; ++q) {
+      using VolumeTables = fem::Tables<fem::Lagrange<Face>, VolumeRule>;
+      Vec3 at = Vec3::Zero(), t1 = Vec3::Zero(), t2 = Vec3::Zero();
+      for (std::size_t a = 0; a < face_nodes; ++a) {
+        const auto column = y.col(static_cast<int>(a));
+        at += VolumeTables::values[q][a] * column;
+        t1 += VolumeTables::gradients[q][a][0] * column;
+        t2 += VolumeTables::gradients[q][a][1] * column;
+      }
+      const double third = VolumeRule::weights[q] / 3;
+      const Vec3 n = t1.cross(t2);
+      cone.volume += third * at.dot(n);
+      for (std::size_t a = 0; a < face_nodes; ++a) {
+        const auto& g = VolumeTables::gradients[q][a];
+        cone.slope.template segment<3>(3 * local[a]) +=
+            third * (VolumeTables::values[q][a] * n + g[0] * t2.cross(at) + g[1] * at.cross(t1));
+      }
+    }
+    return cone;
+  }
+
+ private:
+  // The integrand of a cone is of degree 2 in each coordinate on Quad4, constant on Tri3.
+  using VolumeRule = std::conditional_t<Face::nodes == 3, fem::Gauss<mesh::Tri3, 1>, FaceRule<Face>>;
+  // Exact: the normal is constant on Tri3 and bilinear on Quad4.
+  using Rule = std::conditional_t<Face::nodes == 3, fem::Gauss<mesh::Tri3, 1>, FaceRule<Face>>;
+  using Tables = fem::Tables<fem::Lagrange<Face>, Rule>;
   struct Tangents {
     Vec3 t1, t2;
   };
 
-  static FacePoints of_face(const std::array<int, static_cast<std::size_t>(face_nodes)>& local,
-                            const Eigen::Matrix<double, 3, C::nodes>& x) {
-    FacePoints y;
-    for (int k = 0; k < face_nodes; ++k) y.col(k) = x.col(local[static_cast<std::size_t>(k)]);
-    return y;
-  }
   static Tangents tangents(const FacePoints& y, std::size_t q) {
     Tangents t{Vec3::Zero(), Vec3::Zero()};
     for (int a = 0; a < face_nodes; ++a) {
@@ -113,7 +119,7 @@ class PressureLoad {
     return t;
   }
 
-  std::vector<Loaded> faces_;
+  std::vector<LoadFace<C>> faces_;
 };
 
 }  // namespace tunica::solid

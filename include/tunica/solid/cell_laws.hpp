@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// The laws of the regions of a body, what they read at the points of its cells, and a stored deformation.
+#pragma once
+
+#include "tunica/core/expect.hpp"
+#include "tunica/core/types.hpp"
+#include "tunica/solid/cell_data.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace tunica::solid {
+
+/// Points: of the quadrature of a cell.
+template <class Material, int Points>
+class CellLaws {
+ public:
+  using Law = decltype(Material::isochoric);
+  using PointData = PointOf<Law, double>;
+
+  CellLaws(const Material& material, std::vector<Index> region, Index cell_count)
+      : region_(std::move(region)),
+        cell_count_(static_cast<std::size_t>(cell_count)),
+        materials_(1, material) {}
+
+  /// The law of a cell: that of its region, or the one given at first.
+  [[nodiscard]] const Material& material(Index cell) const {
+    const std::size_t r =
+        region_.empty() ? 0 : static_cast<std::size_t>(region_[static_cast<std::size_t>(cell)]);
+    return r < materials_.size() ? materials_[r] : materials_.front();
+  }
+  /// Another law of the same kind for a region.
+  void material(Index region, const Material& law) {
+    TUNICA_EXPECT(region >= 0, "regions are numbered from 0");
+    const auto r = static_cast<std::size_t>(region);
+    if (r >= materials_.size()) materials_.resize(r + 1, materials_.front());
+    materials_[r] = law;
+  }
+
+  /// What the law reads at a point of a cell (fibres), or at all of them, in the frame of the mesh.
+  void point_data(Index cell, std::size_t point, const PointData& given) {
+    static_assert(needs_point<Law>, "this law reads nothing at its points");
+    TUNICA_EXPECT(point < Points, "a point of the quadrature");
+    if (given_.empty()) {
+      given_.resize(cell_count_ * Points);
+      points_.resize(cell_count_ * Points);
+    }
+    const std::size_t at = static_cast<std::size_t>(cell) * Points + point;
+    given_[at] = given;
+    carry_back(at);
+  }
+  void point_data(Index cell, const PointData& given) {
+    for (std::size_t q = 0; q < Points; ++q) point_data(cell, q, given);
+  }
+
+  /// F_p of a prestress: Points a cell, one cell after the other; empty without one.
+  [[nodiscard]] const std::vector<Eigen::Matrix3d>& prestress() const { return prestress_; }
+  void prestress(std::vector<Eigen::Matrix3d> stored) {
+    TUNICA_EXPECT(stored.empty() || stored.size() == cell_count_ * Points,
+                  "one stored deformation for each point of each cell");
+    prestress_ = std::move(stored);
+    for (std::size_t at = 0; at < given_.size(); ++at) carry_back(at);
+  }
+
+  [[nodiscard]] CellData<Law> data(Index cell) const {
+    const std::size_t first = static_cast<std::size_t>(cell) * Points;
+    return {.points = points_.empty() ? nullptr : &points_[first],
+            .prestress = prestress_.empty() ? nullptr : &prestress_[first]};
+  }
+
+ private:
+  // Fibres are given on the mesh; the law wants them free of stress: F_p^-1 a, of unit length.
+  void carry_back(std::size_t at) {
+    points_[at] = given_[at];
+    if constexpr (requires { points_[at].set(0, points_[at][0]); })
+      if (!prestress_.empty()) pull_back(prestress_[at], points_[at]);
+  }
+
+  std::vector<Index> region_;
+  std::size_t cell_count_;
+  std::vector<Material> materials_;        // by region; the first is also that of all others
+  std::vector<PointData> given_, points_;  // on the mesh, free of stress; Points a cell. Empty: none
+  std::vector<Eigen::Matrix3d> prestress_;
+};
+
+}  // namespace tunica::solid

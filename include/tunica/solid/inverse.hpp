@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// Inverse design: the unloaded shape of a body that is known loaded, by one Newton problem on the known
+// shape [GOVINDJEE96]: X is the unknown, F = (dX/dx)^-1, equilibrium holds on x.
+#pragma once
+
+#include "tunica/core/dual.hpp"
+#include "tunica/fem/assembly.hpp"
+#include "tunica/la/direct.hpp"
+#include "tunica/la/newton.hpp"
+#include "tunica/solid/statics.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace tunica::solid {
+
+struct InverseOptions {
+  double first_step = 1;        // of the load, whose end is 1
+  double smallest_step = 1e-3;  // below it the solution is given up: there may be no unloaded shape
+  double growth = 2;            // of the step after one that held
+  la::NewtonOptions newton{};
+};
+
+struct [[nodiscard]] InverseReport {
+  SolveReport solve{};            // iterations: in all; residual: |r| / scale of the last step that held
+  double load = 0;                // reached factor of the loads: 1 if it converged
+  int steps = 0, cuts = 0;        // that held; rolled back and halved
+  Index inverted_cell = -1;       // where J <= 0 in the last failed step, -1 if nowhere
+  std::vector<double> history{};  // |r| / scale of the last Newton solve
+  Points<3> nodes{};              // of the shape free of that load, 3 x nodes [m]
+
+  [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
+};
+
+namespace detail {
+
+/// r(w) = f_int(X = x - w, u = w) - load f_ext with x and f_ext known; w is the displacement that the
+/// loads have caused, zero at fixed unknowns.
+template <class Wall>
+class InverseProblem {
+ public:
+  explicit InverseProblem(const Wall& wall)
+      : wall_(wall),
+        assembly_(wall.body().mesh()),
+        external_(wall.external(Eigen::VectorXd::Zero(wall.body().unknowns()), 1)),
+        smallest_J_(static_cast<std::size_t>(wall.body().mesh().cell_count())) {}
+
+  double load = 0;
+
+  la::ResidualInfo residual(const Eigen::VectorXd& w, Eigen::VectorXd& r, double) {
+    const auto& body = wall_.body();
+    r.setZero(w.size());
+    assembly_.for_each_cell([&](Index e) {
+      const Nodal<double> we = body.gather(e, w);
+      const auto element = Element::forces(body.material(e), Nodal<double>(body.reference(e) - we), we);
+      smallest_J_[static_cast<std::size_t>(e)] = element.smallest_J;
+      assembly_.add(e, element.force, r);
+    });
+    const auto lowest =
+        std::find_if(smallest_J_.begin(), smallest_J_.end(), [](double J) { return !(J > 0); });
+    inverted_cell_ = lowest == smallest_J_.end() ? -1 : static_cast<Index>(lowest - smallest_J_.begin());
+    const double scale = std::hypot(r.norm(), load * external_.norm());
+    r -= load * external_;
+    body.clear_fixed(r);
+    // No merit to fall: the volume error of a step, times kappa, grows before it falls quadratically.
+    return {.admissible = inverted_cell_ < 0, .scale = scale, .rounding = 0, .merit = 1};
+  }
+  void direction(const Eigen::VectorXd&) {}
+  void tangent(const Eigen::VectorXd& w, la::SparseMatrix& A) const {
+    const auto& body = wall_.body();
+    assembly_.clear(A);
+    assembly_.for_each_cell([&](Index e) {
+      const Nodal<double> x = body.reference(e), we = body.gather(e, w);
+      Nodal<D> X, u;
+      for (int a = 0; a < Element::nodes; ++a)
+        for (int i = 0; i < 3; ++i) {
+          u(i, a) = D::variable(we(i, a), 3 * a + i);
+          X(i, a) = D(x(i, a)) - u(i, a);
+        }
+      const auto element = Element::forces(body.material(e), X, u);
+      Eigen::Matrix<double, size, size> K;
+      for (int r = 0; r < size; ++r)
+        for (int c = 0; c < size; ++c) K(r, c) = element.force[r].d[static_cast<std::size_t>(c)];
+      const double diagonal = K.diagonal().cwiseAbs().maxCoeff();
+      const auto cell = body.mesh().cells.col(e);
+      for (int k = 0; k < size; ++k)
+        if (body.fixed(3 * cell[k / 3] + k % 3)) {
+          K.row(k).setZero();
+          K.col(k).setZero();
+          K(k, k) = diagonal;
+        }
+      assembly_.add(e, K, A);
+    });
+  }
+  [[nodiscard]] la::SparseMatrix pattern() const { return assembly_.matrix(); }
+  [[nodiscard]] Index inverted_cell() const { return inverted_cell_; }
+
+ private:
+  using Element = typename Wall::Element;
+  static constexpr int size = 3 * Element::nodes;
+  template <class S>
+  using Nodal = typename Element::template Nodal<S>;
+  using D = Dual<double, size>;
+
+  const Wall& wall_;
+  fem::Assembly<typename Wall::Cell, 3> assembly_;
+  Eigen::VectorXd external_;
+  std::vector<double> smallest_J_;
+  Index inverted_cell_ = -1;
+};
+
+}  // namespace detail
+
+/// `wall` is composed on the mesh of the known shape, with the loads that act there as end values: its
+/// follower pressures, dead forces and fixed unknowns count, prescribed displacements do not. Supports are
+/// relaxed in the known shape. `diverged` with the shape of the load reached if the steps become too
+/// small: a shape free of stress need not exist.
+///   auto image = ...;  Statics loaded{image, law};  loaded.fix(...);  loaded.pressure(...);
+///   const auto free = unloaded_shape(loaded);  image.nodes = free.nodes;  Statics wall{image, law};
+/// The tangent is not symmetric.
+template <la::LinearSolver Solver = la::Lu, class Wall>
+[[nodiscard]] InverseReport unloaded_shape(const Wall& wall, const InverseOptions& options = {}) {
+  static_assert(!Solver::symmetric,
+                "the tangent of the inverse problem is not symmetric: give Lu or the like");
+  InverseReport report;
+  detail::InverseProblem<Wall> problem(wall);
+  la::Newton<Solver> newton(options.newton);
+  Eigen::VectorXd w = Eigen::VectorXd::Zero(wall.body().unknowns());
+  double step = std::min(1.0, options.first_step);
+  while (report.load < 1) {
+    problem.load = report.load + step > 1 - 1e-9 ? 1 : report.load + step;
+    Eigen::VectorXd next = w;
+    newton.forget();
+    const la::NewtonReport attempt = newton.solve(problem, next);
+    report.solve.iterations += attempt.solve.iterations;
+    report.solve.status = attempt.solve.status;
+    report.history = attempt.history;
+    if (attempt) {
+      w = next;
+      report.load = problem.load;
+      report.solve.residual = attempt.solve.residual;
+      ++report.steps;
+      step *= options.growth;
+      continue;
+    }
+    if (attempt.inadmissible) report.inverted_cell = problem.inverted_cell();
+    ++report.cuts;
+    step = 0.5 * (problem.load - report.load);
+    if (step < options.smallest_step) break;
+  }
+  report.nodes = wall.body().mesh().nodes - w.reshaped(3, wall.body().mesh().node_count());
+  return report;
+}
+
+}  // namespace tunica::solid

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "tunica/solid/prestress.hpp"
+#include "support/thick_tube.hpp"
+#include "tunica/meshing/tube.hpp"
+#include "tunica/solid/inverse.hpp"
+#include "tunica/solid/laws.hpp"
+#include "tunica/solid/stress.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace tunica;
+using namespace tunica::solid;
+
+namespace {
+
+// 120 mmHg on the tube of 5/6.5 mm: what an image of it shows.
+constexpr double image_inner = 5.2688758130e-3, image_outer = 6.7090276741e-3, image_pressure = 15998.687;
+
+mesh::HexMesh image_of_tube(int radial) {
+  return meshing::quarter_tube({.inner_radius = image_inner,
+                                .thickness = image_outer - image_inner,
+                                .length = 1e-3,
+                                .cells = {radial, 4 * radial, 1}});
+}
+
+auto wall_of(const mesh::HexMesh& mesh, double kappa) {
+  const test::ThickTube tube;
+  Statics<mesh::Hex8, Hyperelastic<Yeoh, Quadratic>> wall{
+      mesh, Hyperelastic{Yeoh{.c10 = tube.c10, .c20 = tube.c20}, Quadratic{.kappa = kappa}}};
+  wall.fix(mesh.patch("ends"), Axis::z);
+  wall.fix(mesh.patch("sym_x"), Axis::x);
+  wall.fix(mesh.patch("sym_y"), Axis::y);
+  wall.pressure(mesh.patch("inner"), image_pressure);
+  return wall;
+}
+
+double mean_radius(const mesh::HexMesh& mesh, const Points<3>& nodes, const char* patch) {
+  double sum = 0;
+  const auto on = mesh::patch_nodes(mesh.patch(patch));
+  for (const Index n : on) sum += nodes.col(n).head<2>().norm();
+  return sum / static_cast<double>(on.size());
+}
+
+}  // namespace
+
+TEST_SUITE("convergence") {
+  TEST_CASE("solid: inverse design of the imaged thick tube returns its unloaded radii") {
+    const test::ThickTube tube;
+    std::vector<double> errors;
+    for (const int n : {2, 4, 8}) {
+      auto mesh = image_of_tube(n);
+      const Points<3> image = mesh.nodes;
+      const auto loaded = wall_of(mesh, 1e5 * 2 * tube.c10);
+      const auto free = unloaded_shape(loaded);
+      REQUIRE(free);
+      const double inner = mean_radius(mesh, free.nodes, "inner"),
+                   outer = mean_radius(mesh, free.nodes, "outer");
+      errors.push_back(std::abs(inner - tube.inner) / (image_inner - tube.inner));
+      MESSAGE(n << " cells: unloaded radii " << inner * 1e3 << " / " << outer * 1e3 << " mm, residual "
+                << free.solve.residual << " in " << free.steps << " steps, " << free.solve.iterations
+                << " iterations, Newton's order " << la::observed_order(free.history, 1e-8));
+      CHECK(std::abs(inner - tube.inner) < 2e-4 * tube.inner);
+      CHECK(std::abs(outer - tube.outer) < 2e-4 * tube.outer);
+      CHECK(la::observed_order(free.history, 1e-8) >= 1.9);
+      // Loaded again it is the image, to the residual.
+      mesh.nodes = free.nodes;
+      auto again = wall_of(mesh, 1e5 * 2 * tube.c10);
+      REQUIRE(again.solve());
+      const double back = (mesh.nodes + again.displacement() - image).cwiseAbs().maxCoeff();
+      MESSAGE("loaded again it is off the image by " << back / image_outer << " of its radius");
+      CHECK(back < 1e-8 * image_outer);
+      // Stresses of the closed form: s_tt - s_rr = 4 (c10 + 2 c20 (I1-3))... at the middle of the cells.
+      double worst = 0, largest = 0;
+      const auto sigma = cell_stress(again.body(), again.unknowns());
+      for (Index e = 0; e < mesh.cell_count(); ++e) {
+        Vec3 middle = Vec3::Zero();
+        for (const Index k : mesh.cells.col(e)) middle += image.col(k) / 8;
+        const double r = middle.head<2>().norm();
+        const auto exact = tube.stress_at(r, image_inner / tube.inner);
+        const double c = middle[0] / r, s = middle[1] / r;
+        const Symmetric<double> at = sigma.col(e);
+        const double rr = c * c * at[0] + s * s * at[1] + 2 * c * s * at[3];
+        const double tt = s * s * at[0] + c * c * at[1] - 2 * c * s * at[3];
+        for (const double d : {rr - exact.rr, tt - exact.tt, at[2] - exact.zz})
+          worst = std::max(worst, std::abs(d));
+        largest = std::max(largest, std::abs(exact.tt));
+      }
+      MESSAGE("stresses of the cells are off by " << 100 * worst / largest
+                                                  << " % of the largest hoop stress");
+      if (n == 8) CHECK(worst < 0.01 * largest);
+    }
+    for (std::size_t k = 1; k < errors.size(); ++k) {
+      const double order = std::log2(errors[k - 1] / errors[k]);
+      MESSAGE("error of the inner radius " << errors[k] << " of its displacement, order " << order);
+      CHECK(order == doctest::Approx(2).epsilon(0.1));
+    }
+  }
+
+  TEST_CASE("solid: the prestressed image of the thick tube is in equilibrium and drifts with the step") {
+    const auto mesh = image_of_tube(4);
+    const double kappa = 1e4 * 2 * 174e3;
+    std::vector<double> drifts, residuals;
+    for (const int steps : {10, 20, 40}) {
+      auto wall = wall_of(mesh, kappa);
+      const auto report = prestress(wall, {.steps = steps});
+      REQUIRE(report);
+      CHECK(report.load == 1);
+      drifts.push_back(report.drift / (2 * image_outer));
+      residuals.push_back(report.residual);
+      // Mean hoop stress p r_i/t: any equilibrium has it. Its profile is another than that of a wall which
+      // was loaded from a shape free of stress.
+      double hoop = 0, area = 0, low = 1e300, high = 0;
+      const auto sigma = cell_stress(wall.body(), wall.unknowns());
+      for (Index e = 0; e < mesh.cell_count(); ++e) {
+        Vec3 middle = Vec3::Zero();
+        for (const Index k : mesh.cells.col(e)) middle += mesh.nodes.col(k) / 8;
+        const double r = middle.head<2>().norm(), c = middle[0] / r, s = middle[1] / r;
+        const double tt = s * s * sigma(0, e) + c * c * sigma(1, e) - 2 * c * s * sigma(3, e);
+        hoop += tt;  // cells of one thickness: int s_tt dr
+        area += 1;
+        low = std::min(low, tt), high = std::max(high, tt);
+      }
+      const double mean = image_pressure * image_inner / (image_outer - image_inner);
+      const test::ThickTube tube;
+      const double inside = tube.stress_at(image_inner, image_inner / tube.inner).tt,
+                   outside = tube.stress_at(image_outer, image_inner / tube.inner).tt;
+      MESSAGE(steps << " steps, " << report.solve.iterations << " iterations: drift " << drifts.back()
+                    << " of the diameter, residual " << report.residual << "; mean hoop stress "
+                    << hoop / area / mean << " of p r/t, cells from " << low << " to " << high
+                    << " Pa, loaded from the unloaded shape " << outside << " to " << inside << " Pa");
+      CHECK(hoop / area == doctest::Approx(mean).epsilon(5e-3));
+      CHECK(drifts.back() < 1e-3);
+    }
+    for (std::size_t k = 1; k < drifts.size(); ++k) {
+      MESSAGE("order in the step: drift " << std::log2(drifts[k - 1] / drifts[k]) << ", residual "
+                                          << std::log2(residuals[k - 1] / residuals[k]));
+      CHECK(std::log2(drifts[k - 1] / drifts[k]) == doctest::Approx(1).epsilon(0.15));
+    }
+  }
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "tunica/solid/output.hpp"
+#include "tunica/io/vtu.hpp"
+#include "tunica/meshing/box.hpp"
+#include "tunica/meshing/tube.hpp"
+#include "tunica/solid/laws.hpp"
+#include "tunica/solid/statics.hpp"
+
+#include <doctest/doctest.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+
+using namespace tunica;
+using namespace tunica::solid;
+
+TEST_SUITE("unit") {
+  TEST_CASE("solid: principal values and directions of tensors turned anyhow and with equal values") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> number(-1, 1);
+    for (int n = 0; n < 400; ++n) {
+      Vec3 values(number(random), number(random), number(random));
+      if (n % 4 == 1) values[1] = values[0];
+      if (n % 4 == 2) values.setConstant(values[0]);
+      if (n % 4 == 3) values[2] = 1e-9 * values[2];
+      values *= std::pow(10.0, n % 13 - 6);
+      const Eigen::Matrix3d R =
+          Eigen::AngleAxisd(3 * number(random), Vec3(number(random), number(random), 1).normalized())
+              .toRotationMatrix();
+      const Eigen::Matrix3d A = R * values.asDiagonal() * R.transpose();
+      const Principal p = principal(symmetric_part<double>(A));
+      std::sort(values.data(), values.data() + 3, [](double a, double b) { return a > b; });
+      const double size = values.cwiseAbs().maxCoeff();
+      CHECK((p.values - values).norm() < 1e-14 * size);
+      CHECK((p.directions.transpose() * p.directions - Eigen::Matrix3d::Identity()).norm() < 1e-14);
+      CHECK(p.directions.determinant() > 0);
+      CHECK((A * p.directions - p.directions * p.values.asDiagonal().toDenseMatrix()).norm() < 1e-14 * size);
+    }
+    CHECK(principal(Symmetric<double>::Zero()).values.norm() == 0);
+  }
+
+  TEST_CASE(
+      "solid: recovery gives linear fields back at all nodes and stays calm where cells lie in one layer") {
+    auto mesh = meshing::box_hexes(meshing::Block{.cells = {4, 3, 5}, .hi = Vec3(1, 1, 0.1)});
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> jitter(-0.04, 0.04);
+    for (Index n = 0; n < mesh.node_count(); ++n)
+      mesh.nodes.col(n) += Vec3(jitter(random), jitter(random), 0.1 * jitter(random));
+    const auto linear = [](const Vec3& x) {
+      return Eigen::Vector2d(3 + x[0] - 2 * x[1] + 5 * x[2], 1 - 40 * x[2]);
+    };
+    Eigen::MatrixXd values(2, mesh.cell_count());
+    for (Index e = 0; e < mesh.cell_count(); ++e) {
+      Vec3 middle = Vec3::Zero();
+      for (const Index n : mesh.cells.col(e)) middle += mesh.nodes.col(n) / 8;
+      values.col(e) = linear(middle);
+    }
+    const Eigen::MatrixXd nodal = recover_at_nodes(mesh, values);
+    for (Index n = 0; n < mesh.node_count(); ++n)
+      CHECK((nodal.col(n) - linear(mesh.nodes.col(n))).norm() < 1e-12);
+
+    // A tube of one layer: nothing is known of the way through the wall, and nothing is made up.
+    const auto shell =
+        meshing::tube({.inner_radius = 5e-3, .thickness = 0.5e-3, .length = 10e-3, .cells = {1, 24, 6}});
+    Eigen::MatrixXd wave(1, shell.cell_count());
+    for (Index e = 0; e < shell.cell_count(); ++e) wave(0, e) = 1 + 1e3 * shell.nodes(2, shell.cells(0, e));
+    const Eigen::MatrixXd through = recover_at_nodes(shell, wave);
+    for (Index n = 0; n + 1 < shell.node_count(); n += 2)
+      CHECK(through(0, n) == doctest::Approx(through(0, n + 1)));
+  }
+
+  TEST_CASE("solid: fields of a sheared block are those of its law and have names in a VTU") {
+    const auto mesh = meshing::box_hexes(meshing::Block{.cells = {3, 2, 2}});
+    Statics wall{mesh, Hyperelastic{NeoHooke{.c10 = 1}, SimoTaylor{.kappa = 50}}};
+    Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+    F(0, 1) = 0.5, F(2, 2) = 1.1;
+    wall.start(F * mesh.nodes - mesh.nodes);
+    Points<3> fibres(3, mesh.cell_count());
+    fibres.colwise() = Vec3(0, 3, 0);
+    const WallFields at_nodes = nodal_fields(wall.body(), wall.unknowns(), fibres),
+                     of_cells = cell_fields(wall.body(), wall.unknowns(), fibres);
+    const Eigen::Matrix3d b = std::pow(1.1, -2. / 3) * F * F.transpose();
+    const Eigen::Matrix3d sigma = 2 / 1.1 * (b - b.trace() / 3 * Eigen::Matrix3d::Identity()) +
+                                  25 * (1.1 - 1 / 1.1) * Eigen::Matrix3d::Identity();
+    const Principal p = principal(symmetric_part<double>(sigma));
+    for (const auto* fields : {&at_nodes, &of_cells})
+      for (Eigen::Index k = 0; k < fields->J.size(); ++k) {
+        CHECK((fields->cauchy.col(k) - symmetric_part<double>(sigma)).norm() < 1e-12);
+        CHECK(fields->J[k] == doctest::Approx(1.1).epsilon(1e-12));
+        CHECK(fields->fibre_stretch[k] == doctest::Approx(std::sqrt(1.25)).epsilon(1e-12));
+        CHECK((fields->principal.col(k) - p.values).norm() < 1e-12);
+        CHECK(std::abs(fields->directions[0].col(k).dot(p.directions.col(0))) > 1 - 1e-12);
+        CHECK(fields->von_mises[k] == doctest::Approx(von_mises(symmetric_part<double>(sigma))));
+      }
+    io::VtuData data;
+    at_nodes.for_each([&](const char* name, const auto& field) { data.points.emplace_back(name, field); });
+    of_cells.for_each([&](const char* name, const auto& field) { data.cells.emplace_back(name, field); });
+    const auto path = std::filesystem::temp_directory_path() / "tunica_solid_output_test.vtu";
+    io::write_vtu(path, mesh, data);
+    std::stringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    std::filesystem::remove(path);
+    for (const char* name :
+         {"cauchy_stress", "von_mises", "principal_stress", "principal_direction_1", "J", "fibre_stretch"})
+      CHECK(text.str().find("Name=\"" + std::string(name) + "\"") != std::string::npos);
+    CHECK(text.str().find("Name=\"cauchy_stress\" NumberOfComponents=\"6\"") != std::string::npos);
+  }
+}

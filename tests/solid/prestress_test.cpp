@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "tunica/solid/prestress.hpp"
+#include "tunica/meshing/box.hpp"
+#include "tunica/solid/dynamics.hpp"
+#include "tunica/solid/fibre_laws.hpp"
+#include "tunica/solid/inverse.hpp"
+#include "tunica/solid/laws.hpp"
+
+#include <doctest/doctest.h>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <vector>
+
+using namespace tunica;
+using namespace tunica::solid;
+
+namespace {
+
+const Hyperelastic artery{HolzapfelGasserOgden{.c = 30e3, .k1 = 20e3, .k2 = 2}, Quadratic{.kappa = 3e6}};
+constexpr double side = 0.01;  // [m]
+
+/// Fibres at 35 degrees to x in the planes z, as they are on the mesh.
+Fibres<double, 2> fibres() {
+  Fibres<double, 2> f;
+  const double angle = 35 * std::acos(-1.0) / 180;
+  f.set(0, {std::cos(angle), std::sin(angle), 0});
+  f.set(1, {std::cos(angle), -std::sin(angle), 0});
+  return f;
+}
+
+/// A cube that slides on three of its sides, pulled along x by a traction that is given on its mesh.
+template <class Wall>
+void pull(Wall& wall, const mesh::HexMesh& mesh, double traction) {
+  wall.fix(mesh.patch("x0"), Axis::x);
+  wall.fix(mesh.patch("y0"), Axis::y);
+  wall.fix(mesh.patch("z0"), Axis::z);
+  const auto& faces = mesh.patch("x1").faces;
+  std::vector<double> share(static_cast<std::size_t>(mesh.node_count()), 0);
+  for (Eigen::Index f = 0; f < faces.cols(); ++f)
+    for (const Index n : faces.col(f))
+      share[static_cast<std::size_t>(n)] += traction * side * side / static_cast<double>(4 * faces.cols());
+  for (Index n = 0; n < mesh.node_count(); ++n) wall.force(n, Vec3(share[static_cast<std::size_t>(n)], 0, 0));
+}
+
+}  // namespace
+
+TEST_SUITE("unit") {
+  TEST_CASE("solid: the tangent of the inverse problem is the derivative of its residual") {
+    const auto mesh = meshing::box_hexes(meshing::Block{.cells = {2, 2, 1}, .hi = Vec3::Constant(side)});
+    Statics wall{mesh, Hyperelastic{Yeoh{.c10 = 50e3, .c20 = 100e3}, SimoTaylor{.kappa = 1e6}}};
+    pull(wall, mesh, 1e4);
+    detail::InverseProblem problem(wall);
+    problem.load = 0.5;
+    Eigen::VectorXd w(wall.body().unknowns()), dw = w, ahead, behind;
+    for (Eigen::Index k = 0; k < w.size(); ++k) {
+      w[k] = 0.05 * side * std::sin(0.7 * static_cast<double>(k));
+      dw[k] = std::cos(1.3 * static_cast<double>(k));
+    }
+    wall.body().clear_fixed(w);
+    wall.body().clear_fixed(dw);
+    const double h = 1e-5 * side;
+    REQUIRE(problem.residual(w + h * dw, ahead, la::no_step).admissible);
+    REQUIRE(problem.residual(w - h * dw, behind, la::no_step).admissible);
+    la::SparseMatrix A = problem.pattern();
+    problem.tangent(w, A);
+    const Eigen::VectorXd slope = (ahead - behind) / (2 * h);
+    CHECK((A * dw - slope).norm() < 1e-8 * slope.norm());
+  }
+
+  TEST_CASE("solid: in a homogeneous body the prestress is the inverse of the unloaded shape") {
+    const auto mesh = meshing::box_hexes(meshing::Block{.cells = {2, 1, 1}, .hi = Vec3::Constant(side)});
+    // The law without its fibres first: the unloaded shape is found on the image's own frame there.
+    const Hyperelastic rubber{NeoHooke{.c10 = 15e3}, Quadratic{.kappa = 3e6}};
+    Statics wall{mesh, rubber}, imaged{mesh, rubber};
+    pull(wall, mesh, 20e3);
+    pull(imaged, mesh, 20e3);
+    const auto free = unloaded_shape(imaged);
+    REQUIRE(free);
+    const Vec3 size = free.nodes.rowwise().maxCoeff();
+    const Vec3 stretch = side * size.cwiseInverse();
+    const auto report = prestress(wall, {.steps = 200});
+    REQUIRE(report);
+    const Eigen::Matrix3d F = wall.body().laws().prestress().front();
+    MESSAGE("stretches " << stretch.transpose() << ", stored " << F.diagonal().transpose() << ", drift "
+                         << report.drift / side << ", residual " << report.residual);
+    CHECK((F.diagonal() - stretch).norm() < 2e-3 * (stretch - Vec3::Ones()).norm());
+    CHECK((F - Eigen::Matrix3d(F.diagonal().asDiagonal())).norm() < 1e-10);
+    // The stress is what the traction asks for.
+    const auto sigma = Body<mesh::Hex8, Hyperelastic<NeoHooke, Quadratic>>::Element::stress(
+        rubber, wall.body().reference(0), wall.body().gather(0, wall.unknowns()), wall.body().data(0));
+    CHECK(sigma.sigma(0, 0) == doctest::Approx(20e3).epsilon(1e-3));
+    CHECK(std::abs(sigma.sigma(1, 0)) < 20);
+  }
+
+  TEST_CASE("solid: fibres are carried back by the stored deformation and the tangent knows of both") {
+    const auto mesh = meshing::box_hexes(meshing::Block{.cells = {2, 1, 1}, .hi = Vec3::Constant(side)});
+    Statics wall{mesh, artery};
+    for (Index e = 0; e < mesh.cell_count(); ++e) wall.laws().point_data(e, fibres());
+    pull(wall, mesh, 30e3);
+    const auto report = prestress(wall, {.steps = 20});
+    REQUIRE(report);
+    const auto data = wall.body().data(0);
+    const Eigen::Matrix3d F = data.prestress[0];
+    const Vec3 given(fibres()[0][0], fibres()[0][1], 0);
+    const Vec3 back(data.points[0][0][0], data.points[0][0][1], data.points[0][0][2]);
+    CHECK(back.norm() == doctest::Approx(1).epsilon(1e-14));
+    CHECK((F * back).normalized().dot(given) == doctest::Approx(1).epsilon(1e-14));
+    CHECK(back.dot(given) < 1 - 1e-5);  // they had been turned towards the pull
+
+    // Forces and tangent with fibres and prestress against each other and against the energy.
+    auto body = wall.body();
+    Eigen::VectorXd u(body.unknowns()), du = u, f, ahead, behind, predicted;
+    for (Eigen::Index k = 0; k < u.size(); ++k) {
+      u[k] = 0.03 * side * std::sin(0.7 * static_cast<double>(k));
+      du[k] = std::cos(1.3 * static_cast<double>(k));
+    }
+    const double h = 1e-5 * side;
+    REQUIRE(body.internal_forces(u + h * du, la::no_step, ahead, predicted));
+    REQUIRE(body.internal_forces(u - h * du, la::no_step, behind, predicted));
+    REQUIRE(body.internal_forces(u, la::no_step, f, predicted));
+    const double work = (body.strain_energy(u + h * du) - body.strain_energy(u - h * du)) / (2 * h);
+    CHECK(f.dot(du) == doctest::Approx(work).epsilon(1e-6));
+    auto free = Body(mesh, artery, 1.0, Mass::lumped);  // the same without fixed unknowns
+    for (Index e = 0; e < mesh.cell_count(); ++e) free.laws().point_data(e, fibres());
+    free.laws().prestress(body.laws().prestress());
+    REQUIRE(free.internal_forces(u, la::no_step, f, predicted));
+    la::SparseMatrix K = free.pattern();
+    free.tangent(u, Eigen::VectorXd(0), {}, K);
+    const Eigen::VectorXd slope = (ahead - behind) / (2 * h);
+    CHECK((K * du - slope).norm() < 1e-6 * slope.norm());
+  }
+
+  TEST_CASE("solid: a prestressed wall in dynamics stays where it was imaged") {
+    const auto mesh = meshing::box_hexes(meshing::Block{.cells = {2, 2, 2}, .hi = Vec3::Constant(side)});
+    const Hyperelastic rubber{NeoHooke{.c10 = 15e3}, Quadratic{.kappa = 3e6}};
+    Statics wall{mesh, rubber};
+    pull(wall, mesh, 5e3);
+    REQUIRE(prestress(wall, {.steps = 20}));
+    Dynamics moving{mesh, rubber, 1100.0}, bare{mesh, rubber, 1100.0};
+    moving.laws().prestress(wall.body().laws().prestress());
+    for (auto* d : {&moving, &bare}) {
+      pull(*d, mesh, 5e3);
+      REQUIRE(d->start(wall.displacement(), Points<3>::Zero(3, mesh.node_count())));
+      for (int k = 0; k < 20; ++k) REQUIRE(d->step(1e-4));
+    }
+    const double moved = (moving.nodal_displacement() - wall.displacement()).cwiseAbs().maxCoeff(),
+                 swung = bare.nodal_displacement().cwiseAbs().maxCoeff();
+    MESSAGE("moved " << moved / side << " of its side, without prestress " << swung / side);
+    CHECK(moved < 1e-8 * side);
+    CHECK(swung > 1e-2 * side);
+  }
+}
