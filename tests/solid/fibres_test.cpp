@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+#include "support/laws.hpp"
+#include "tunica/meshing/tube.hpp"
+#include "tunica/solid/fibre_field.hpp"
+#include "tunica/solid/fibre_helix.hpp"
+#include "tunica/solid/fibre_laws.hpp"
+#include "tunica/solid/hyperelastic.hpp"
+#include "tunica/solid/laws.hpp"
+#include "tunica/solid/volumetric.hpp"
+
+#include <doctest/doctest.h>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+using namespace tunica;
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr solid::HolzapfelGasserOgden media{.c = 3.0e3, .k1 = 2.3632e3, .k2 = .8393};
+constexpr solid::HolzapfelGasserOgden adventitia{.c = .3e3, .k1 = .5620e3, .k2 = .7112};
+constexpr solid::GasserOgdenHolzapfel spread{.c = 7.64e3, .k1 = 996.6e3, .k2 = 524.6, .kappa = .226};
+
+/// r(R) of an incompressible tube with r_i at R_i, stretched along by z.
+double radius(double R, double r_i, double R_i, double z) {
+  return std::sqrt(r_i * r_i + (R * R - R_i * R_i) / z);
+}
+
+/// int (s_tt - s_rr)/r dr over a layer [Pa]: F = diag(R/(r z), r/R, z) in the axes r, t, z.
+double pressure_of_layer(const solid::HolzapfelGasserOgden& law, double angle, double from, double to,
+                         double r_i, double R_i, double z) {
+  solid::Fibres<double, 2> fibres;
+  fibres.set(0, {0, std::cos(angle), std::sin(angle)});
+  fibres.set(1, {0, std::cos(angle), -std::sin(angle)});
+  constexpr std::array<double, 3> at{-0.7745966692414834, 0, 0.7745966692414834},
+      weight{5. / 9, 8. / 9, 5. / 9};
+  constexpr int panels = 40;
+  double p = 0;
+  for (int n = 0; n < panels; ++n)
+    for (std::size_t q = 0; q < 3; ++q) {
+      const double h = (to - from) / panels, R = from + h * (n + 0.5 + 0.5 * at[q]);
+      const double r = radius(R, r_i, R_i, z);
+      const Tensor<double> F{.m = {R / (r * z), 0, 0, 0, r / R, 0, 0, 0, z}};
+      const auto s = test::cauchy(solid::stress(law, F, fibres), F);
+      p += 0.5 * h * weight[q] * (s(1, 1) - s(0, 0)) / r * R / (r * z);  // dr = R/(r z) dR
+    }
+  return p;
+}
+
+/// The least eigenvalue of the acoustic tensors n_J A_iJkL n_L over directions n of a sphere [Pa].
+double least_acoustic(const std::array<double, 81>& A) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int a = 0; a <= 18; ++a)
+    for (int b = 0; b < 36; ++b) {
+      const double t = a * std::numbers::pi / 36, f = b * std::numbers::pi / 18;
+      const Vec3 n(std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t));
+      Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+          for (int J = 0; J < 3; ++J)
+            for (int L = 0; L < 3; ++L)
+              Q(i, k) += n[J] * n[L] * A[static_cast<std::size_t>(9 * (3 * i + J) + 3 * k + L)];
+      least = std::min(least, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(Q).eigenvalues()[0]);
+    }
+  return least;
+}
+
+/// The same energy without the switch: fibres that push back.
+struct Unswitched {
+  double c, k1, k2;
+  static constexpr std::array reads{solid::Invariant::I1, solid::Invariant::I4, solid::Invariant::I6};
+  template <class S>
+  using Point = solid::Fibres<S, 2>;
+  template <class S>
+  [[nodiscard]] S energy(const std::array<S, 3>& I) const {
+    using std::exp;
+    const auto f = [&](const S& e) { return S(k1 / (2 * k2)) * (exp(S(k2) * e * e) - S(1)); };
+    return S(c / 2) * (I[0] - S(3)) + f(I[1] - S(1)) + f(I[2] - S(1));
+  }
+};
+
+template <class Make>
+std::string refusal(const Make& make) {
+  try {
+    (void)make();
+  } catch (const MeshError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_SUITE("unit") {
+  TEST_CASE("solid: two layers of fibres carry the pressures of the two-layer tube") {
+    // Exact for the law, the stress-free closed ring: R .71 - .97 - 1.10 mm, fibres at 29 and 62 degrees.
+    struct Row {
+      double r_i, z, p;  // mm, -, kPa
+    };
+    constexpr std::array<Row, 9> rows{{{0.7, 1.5, 0.687842},
+                                       {0.7, 1.9, 2.105628},
+                                       {0.9, 1.7, 2.208631},
+                                       {1.0, 1.5, 2.757800},
+                                       {1.1, 1.5, 4.919317},
+                                       {1.1, 1.9, 10.328069},
+                                       {1.2, 1.7, 14.757691},
+                                       {1.3, 1.5, 30.414137},
+                                       {1.3, 1.9, 78.984322}}};
+    double worst = 0;
+    for (const auto& [r_i, z, p] : rows) {
+      const double got = 1e-3 * (pressure_of_layer(media, 29 * degree, .71, .97, r_i, .71, z) +
+                                 pressure_of_layer(adventitia, 62 * degree, .97, 1.10, r_i, .71, z));
+      worst = std::max(worst, std::abs(got / p - 1));
+    }
+    MESSAGE("largest error of nine pressures: " << worst);
+    CHECK(worst < 1e-6);
+  }
+
+  TEST_CASE("solid: the switch of tension keeps energy and stress whole and the stiffness one-sided") {
+    // Stretch l along a single family, l^-1/2 across: I4 = l^2 passes 1, and with dispersion E passes 0, at l
+    // = 1.
+    solid::Fibres<double, 2> fibre;
+    fibre.set(0, {1, 0, 0});
+    const auto stretched = [](double l) {
+      const double w = 1 / std::sqrt(l);
+      return Tensor<double>{.m = {l, 0, 0, 0, w, 0, 0, 0, w}};
+    };
+    const auto check = [&](const auto& law, double ground, double jump) {
+      const solid::NeoHooke soft{.c10 = ground / 2};
+      constexpr double h = 1e-7;
+      const auto above = solid::response(law, stretched(1 + h), fibre);
+      const auto below = solid::response(law, stretched(1 - h), fibre);
+      const auto plain = solid::response(soft, stretched(1 - h));
+      for (std::size_t k = 0; k < 9; ++k) {
+        CHECK(std::abs(above.P.m[k] - below.P.m[k]) < 10 * h * test::largest(above.A));
+        CHECK(below.P.m[k] == doctest::Approx(plain.P.m[k]));  // pressed: the ground alone
+      }
+      CHECK(std::abs(solid::energy(law, stretched(1 + h), fibre) -
+                     solid::energy(law, stretched(1 - h), fibre)) < 100 * h * h * jump);
+      for (std::size_t k = 0; k < 81; ++k) CHECK(below.A[k] == doctest::Approx(plain.A[k]));
+      // dP_xx/dF_xx jumps by k1 (dE/dF_xx)^2 = k1 (1 - 3 kappa)^2 (4/3)^2, as dI4/dF_xx = 2 - 2/3 there.
+      CHECK(above.A[0] - below.A[0] == doctest::Approx(jump).epsilon(1e-4));
+      // At the switch itself it is that of compression: one value, not a mean.
+      const auto on = solid::response(law, identity<double>(), fibre);
+      CHECK(on.A[0] == doctest::Approx(below.A[0]).epsilon(1e-5));
+    };
+    check(media, media.c, media.k1 * 16 / 9);
+    const double along = 1 - 3 * spread.kappa;
+    check(spread, spread.c, spread.k1 * along * along * 16 / 9);
+
+    // With dispersion E, not I4, throws the switch: here I4 < 1 and E > 0, and the fibres pull.
+    const Tensor<double> F{.m = {0.99, 0, 0, 0, 1.3, 0, 0, 0, 1 / (0.99 * 1.3)}};
+    const double I1 = double_dot(F, F), E = spread.kappa * (I1 - 3) + along * (0.99 * 0.99 - 1);
+    REQUIRE(E > 0);
+    const double want =
+        spread.c / 2 * (I1 - 3) + spread.k1 / (2 * spread.k2) * (std::exp(spread.k2 * E * E) - 1);
+    CHECK(solid::energy(spread, F, fibre) == doctest::Approx(want));
+  }
+
+  TEST_CASE("solid: no dispersion is the law of aligned fibres and full dispersion sees no direction") {
+    const solid::GasserOgdenHolzapfel none{.c = media.c, .k1 = media.k1, .k2 = media.k2, .kappa = 0};
+    const solid::GasserOgdenHolzapfel full{.c = 1e3, .k1 = 2e3, .k2 = 0.7, .kappa = 1. / 3};
+    for (const auto& F : test::states) {
+      const auto a = solid::response(none, F, test::crossed(0.6)),
+                 b = solid::response(media, F, test::crossed(0.6));
+      const double scale = test::largest(b.A);
+      for (std::size_t k = 0; k < 81; ++k) CHECK(std::abs(a.A[k] - b.A[k]) < 1e-13 * scale);
+      const auto x = solid::response(full, F, test::crossed(0.2)),
+                 y = solid::response(full, F, test::crossed(1.3));
+      for (std::size_t k = 0; k < 81; ++k) CHECK(std::abs(x.A[k] - y.A[k]) < 1e-12 * test::largest(y.A));
+    }
+  }
+
+  TEST_CASE("solid: fibres with the switch of tension stay elliptic under compression") {
+    // From 0.4 to 1.3 of the length along the bisector of the families, alone and with shear.
+    const solid::Quadratic bulk{.kappa = 3e6};
+    const auto along_path = [&](const auto& law, double angle) {
+      double least = std::numeric_limits<double>::infinity();
+      for (double l = 0.4; l < 1.31; l += 0.05)
+        for (const double g : {0.0, 0.3}) {
+          const double w = 1 / std::sqrt(l);
+          const Tensor<double> F{.m = {l, g, 0, 0, w, 0, 0, 0, w}};
+          const auto r = solid::response(solid::Hyperelastic{law, bulk}, F, test::crossed(angle));
+          least = std::min(least, least_acoustic(r.A));
+        }
+      return least;
+    };
+    const solid::HolzapfelGasserOgden stiff{.c = 3e3, .k1 = 200e3, .k2 = 20};
+    const solid::GasserOgdenHolzapfel dispersed{.c = 7.64e3, .k1 = 996.6e3, .k2 = 20, .kappa = .1};
+    for (const double angle : {0.0, 0.5, 0.9}) {
+      const double a = along_path(stiff, angle), b = along_path(dispersed, angle);
+      MESSAGE("angle " << angle << ": least eigenvalue " << a / stiff.c << " c and " << b / dispersed.c
+                       << " c");
+      CHECK(a > 0);
+      CHECK(b > 0);
+    }
+    // The control: fibres that push back lose it.
+    CHECK(along_path(Unswitched{.c = 3e3, .k1 = 200e3, .k2 = 20}, 0.0) < 0);
+  }
+
+  TEST_CASE("solid: helical fibres lie at their angle on the walls of a tube") {
+    const auto tube = meshing::tube({.inner_radius = 5, .thickness = 1.5, .length = 10, .cells = {3, 24, 6}});
+    Points<3> axis(3, 5);
+    axis << 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 2, 5, 8, 11;
+    const solid::CentreLines line({axis});
+    const auto layer = solid::radial_layers(tube, line, {5.5, 6.0});
+    const auto field = solid::helical_fibres(
+        tube, line, solid::angles_of_layers(layer, {29 * degree, 45 * degree, 62 * degree}));
+    std::array<int, 3> count{};
+    for (Index c = 0; c < tube.cell_count(); ++c) {
+      const Vec3 x = solid::cell_middle(tube, c), around = Vec3(-x[1], x[0], 0).normalized();
+      const auto k = static_cast<std::size_t>(layer[static_cast<std::size_t>(c)]);
+      ++count[k];
+      const double angle = std::array{29, 45, 62}[k] * degree;
+      for (std::size_t f = 0; f < 2; ++f) {
+        const Vec3 a = field.family[f].col(c);
+        CHECK(a.norm() == doctest::Approx(1).epsilon(1e-14));
+        CHECK(std::abs(a.dot(Vec3(x[0], x[1], 0).normalized())) < 1e-14);
+        CHECK(std::abs(a.dot(around)) == doctest::Approx(std::cos(angle)).epsilon(1e-12));
+        CHECK(a[2] == doctest::Approx(f == 0 ? std::sin(angle) : -std::sin(angle)).epsilon(1e-12));
+      }
+    }
+    CHECK(count == std::array{144, 144, 144});
+    CHECK(field[7].m == solid::checked(field, tube.cell_count())[7].m);
+
+    // About an arc of radius 30, in cells around it: outward points away from the arc, along follows it.
+    Points<3> arc(3, 181);
+    for (int k = 0; k <= 180; ++k)
+      arc.col(k) = 30 * Vec3(std::cos(k * 0.5 * degree), std::sin(k * 0.5 * degree), 0);
+    const solid::CentreLines bend({arc});
+    double worst = 0;
+    for (double s = 0.1; s < 1.4; s += 0.0137)
+      for (double t = 0; t < 6; t += 0.5) {
+        const Vec3 e(std::cos(s), std::sin(s), 0), out = std::cos(t) * e + std::sin(t) * Vec3(0, 0, 1);
+        const auto f = bend.at(30 * e + 5 * out);
+        worst = std::max({worst, (f.outward - out).norm(), (f.along - Vec3(-e[1], e[0], 0)).norm(),
+                          std::abs(f.radius - 5)});
+      }
+    MESSAGE("largest error of directions about an arc of 0.5 degrees a chord: " << worst);
+    CHECK(worst < 5e-3);
+
+    CHECK(says(refusal([&] {
+                 return solid::angles_of_layers({0, 0, 3}, {1.0});
+               }),
+               "cell 2: no angle for layer 3"));
+    CHECK(
+        says(refusal([&] { return solid::helical_fibres(tube, line, std::vector<double>(3)); }), "3 angles"));
+    CHECK(says(refusal([] { return solid::CentreLines({Points<3>::Zero(3, 1)}); }), "less than two points"));
+    CHECK(says(refusal([] { return solid::CentreLines({Points<3>::Zero(3, 3)}); }), "behind point 0"));
+    Points<3> through(3, 2);
+    through << solid::cell_middle(tube, 5) - Vec3(0, 0, 1), solid::cell_middle(tube, 5) + Vec3(0, 0, 1);
+    CHECK(says(refusal([&] { return solid::helical_fibres(tube, solid::CentreLines({through}), 0.5); }),
+               "lies on the centre line"));
+  }
+
+  TEST_CASE(
+      "solid: fibre fields are refused by cell where they are not numbers or missing or not of length 1") {
+    const auto good = solid::uniform_fibres<2>(6, {Vec3(3, 4, 0), Vec3(0, 0, 2)});
+    CHECK(good.family[0].col(5) == Vec3(0.6, 0.8, 0));
+    CHECK(solid::checked(good, 6, {.frame = true}).family[1] == good.family[1]);
+    const auto with = [&](Index cell, const Vec3& a) {
+      auto field = good;
+      field.family[1].col(cell) = a;
+      return field;
+    };
+    const auto why = [&](const auto& field, const solid::FibreCheck& options = {}) {
+      return refusal([&] { return solid::checked(field, 6, options); });
+    };
+    CHECK(says(why(with(3, Vec3(0, std::nan(""), 1))), "cell 3, family 2: a direction that is not a number"));
+    CHECK(says(why(with(4, Vec3(0, 0, 0))), "cell 4, family 2: no fibres are given"));
+    CHECK(says(why(with(2, Vec3(0, 0, 1.01))), "cell 2, family 2: a direction of length 1.01"));
+    CHECK(says(why(with(2, Vec3(0.6, 0.8, 0)), {.frame = true}),
+               "cell 2, family 2: a direction not orthogonal"));
+    CHECK(why(with(4, Vec3(0, 0, 0)), {.gaps = true}).empty());
+    CHECK(solid::checked(with(1, Vec3(0, 0, 1.0004)), 6).family[1].col(1) == Vec3(0, 0, 1));
+    CHECK(says(refusal([&] { return solid::checked(good, 7); }), "6 directions, the mesh has 7 cells"));
+    CHECK(says(refusal([] { return solid::uniform_fibres<1>(2, {Vec3(0, 0, 0)}); }), "has no direction"));
+
+    const auto other = solid::uniform_fibres<2>(6, {Vec3(1, 0, 0), Vec3(0, 1, 0)});
+    const std::vector<Index> layer{0, 1, 1, 0, 0, 1};
+    const auto both = solid::layered_fibres<2>(layer, {good, other});
+    for (Index c = 0; c < 6; ++c)
+      CHECK(both[c].m == (layer[static_cast<std::size_t>(c)] == 0 ? good : other)[c].m);
+    CHECK(says(refusal([&] {
+                 return solid::layered_fibres<2>({0, 2}, {good, other});
+               }),
+               "cell 1: no fibres for layer 2"));
+  }
+}
