@@ -7,6 +7,7 @@
 #include "output_files.hpp"
 #include "patch_surface.hpp"
 #include "stages.hpp"
+#include "tunica/core/error.hpp"
 #include "tunica/image/phantom_labels.hpp"
 #include "tunica/io/vtk_image.hpp"
 #include "tunica/io/vtp.hpp"
@@ -14,12 +15,28 @@
 #include "tunica/meshing/multi_region.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
 using namespace tunica;
 using namespace tunica::examples;
+
+namespace {
+
+/// InputError for an image of intensities: each of its values would be a material.
+void require_few_labels(const image::Image<std::int32_t>& labels) {
+  constexpr std::size_t most = 1000;
+  const std::set<std::int32_t> different(labels.values.begin(), labels.values.end());
+  if (different.size() > most)
+    throw InputError("the image has " + std::to_string(different.size()) +
+                     " different values: a segmentation has at most " + std::to_string(most) +
+                     ", and image_to_mesh takes intensities");
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   std::string in, out, report_file;
@@ -66,6 +83,7 @@ int main(int argc, char** argv) {
       return in == "phantom" ? image::PhantomLabels{}()
                              : image::as_labels(io::read_vtk_image<double>(in).image);
     });
+    require_few_labels(labels);
     const auto meshed = stage("mesh", [&] { return meshing::multi_region(labels, options); });
     report["fill"] = material_figures(meshed);
     tell_cells(meshed.mesh.cell_count(), meshed.report.min_dihedral, meshed.report.mean_ratio);

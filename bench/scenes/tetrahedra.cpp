@@ -42,7 +42,7 @@ int main(int count, char** arguments) {
           static_cast<double>(r.below_target) / r.tetrahedra, r.mean_ratio, cpu, bench::flags());
     }
     for (const char* peer : {"tetgen", "gmsh", "hxt", "netgen"})
-      if (const auto p = bench::peer_tetrahedra(surface, peer, n < 200 ? 60 : 30))
+      if (const auto p = bench::peer_tetrahedra(surface, peer, n < 200 ? 60 : 300))
         row(peer, surface.cell_count(), p->tetrahedra, p->min_dihedral, p->below_18, p->mean_ratio, p->cpu,
             p->version);
   }

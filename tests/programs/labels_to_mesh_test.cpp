@@ -64,11 +64,16 @@ TEST_SUITE("job") {
       CHECK(o.status == status);
       CHECK(has(o.err, part));
     };
+    int value = 0;
+    tunica::io::write_vtk_image(
+        folder.path() / "grey.vtk",
+        label_image({12, 12, 12}, {1, 1, 1}, [&](const tunica::Vec3&) { return ++value; }));
     fails("empty.vtk", 1, "no voxel of the image has a label");
     fails("negative.vtk", 1, "no label");
+    fails("grey.vtk", 1, "the image has 1728 different values");
     fails("empty.vtk --name 1", 2, "N=TEXT");
     fails("empty.vtk --edge 0", 2, "more than 0");
     fails("empty.vtk --sweeps -1", 2, "from 0 to 1000");
-    CHECK(folder.files().size() == 2);
+    CHECK(folder.files().size() == 3);
   }
 }
