@@ -32,5 +32,6 @@ struct Goal {
 [[nodiscard]] std::vector<Goal> hex_goals();
 [[nodiscard]] std::vector<Goal> solid_goals();
 [[nodiscard]] std::vector<Goal> fluid_goals();
+[[nodiscard]] std::vector<Goal> la_goals();
 
 }  // namespace tunica::bench
