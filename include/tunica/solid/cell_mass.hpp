@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/types.hpp"
 #include "tunica/fem/geometry.hpp"
 #include "tunica/fem/quadrature.hpp"
 
