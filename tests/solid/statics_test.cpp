@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 using namespace tunica;
 using namespace tunica::solid;
@@ -162,6 +163,48 @@ TEST_SUITE("unit") {
     symmetric.pressure(0, 0);
     REQUIRE(symmetric.solve());
     CHECK(symmetric.displacement().norm() < 1e-8 * a.norm());
+  }
+
+  TEST_CASE("solid: load steps taken one by one are those of solve and loads may change on the way") {
+    const auto mesh =
+        meshing::tube({.inner_radius = 5e-3, .thickness = 1.5e-3, .length = 8e-3, .cells = {1, 12, 4}});
+    const StaticsOptions options{.first_step = 0.3};
+    Statics whole{mesh, wall_law, options}, stepped{mesh, wall_law, options};
+    for (auto* wall : {&whole, &stepped}) {
+      wall->fix(mesh.patch("ends"));
+      wall->pressure(mesh.patch("inner"), 10e3);
+    }
+    const auto report = whole.solve();
+    REQUIRE(report);
+    std::vector<double> loads;
+    while (!stepped.done()) {
+      const auto step = stepped.step();
+      REQUIRE(step);
+      loads.push_back(step.load);
+    }
+    REQUIRE(report.path.size() == loads.size());
+    CHECK(report.steps == static_cast<int>(loads.size()));
+    int iterations = 0;
+    for (std::size_t k = 0; k < loads.size(); ++k) {
+      CHECK(report.path[k].load == loads[k]);
+      CHECK(report.path[k].solve.residual < 1e-8);
+      iterations += report.path[k].iterations;
+    }
+    CHECK(loads.front() == 0.3);
+    CHECK(iterations == report.solve.iterations);
+    CHECK(stepped.displacement() == whole.displacement());
+
+    // A new end on the way: the path starts anew where it is. Not further than it is told.
+    Statics turned{mesh, wall_law, options};
+    turned.fix(mesh.patch("ends"));
+    turned.pressure(mesh.patch("inner"), 16e3);
+    REQUIRE(turned.step(0.1));
+    CHECK(turned.load() == 0.1);
+    turned.pressure(0, 10e3);
+    CHECK(turned.load() == 0);
+    CHECK(turned.pressures(0)[0] == doctest::Approx(1.6e3));
+    REQUIRE(turned.solve());
+    CHECK((turned.displacement() - whole.displacement()).norm() < 1e-9 * whole.displacement().norm());
   }
 
   TEST_CASE("solid: a mesh with an inverted cell is refused by name") {
