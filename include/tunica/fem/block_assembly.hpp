@@ -96,15 +96,22 @@ class BlockAssembly {
   template <class S, int Dim, class Values>
   TUNICA_INLINE void gather(const CellPack<Lanes<S>::count>& pack, const Values& values,
                             S (&x)[nodes][Dim]) const {
-    using T = typename Lanes<S>::type;
-    alignas(64) T row[Lanes<S>::count][nodes * Dim];
-    for (int l = 0; l < Lanes<S>::count; ++l) {
-      const Index* const node = corners(pack.cell[l]);
+    if constexpr (Dim == 3 && has_wide_registers<S>) {
+      const Index last = node_count() - 1;
       for (int a = 0; a < nodes; ++a)
-        for (int i = 0; i < Dim; ++i)
-          row[l][Dim * a + i] = static_cast<T>(values.data()[std::ptrdiff_t{Dim} * node[a] + i]);
+        triples_to_lanes(
+            values.data(), last, [&](int l) { return corners(pack.cell[l])[a]; }, x[a]);
+    } else {
+      using T = typename Lanes<S>::type;
+      alignas(64) T row[Lanes<S>::count][nodes * Dim];
+      for (int l = 0; l < Lanes<S>::count; ++l) {
+        const Index* const node = corners(pack.cell[l]);
+        for (int a = 0; a < nodes; ++a)
+          for (int i = 0; i < Dim; ++i)
+            row[l][Dim * a + i] = static_cast<T>(values.data()[std::ptrdiff_t{Dim} * node[a] + i]);
+      }
+      rows_to_lanes<nodes * Dim>(&row[0][0], nodes * Dim, &x[0][0]);
     }
-    rows_to_lanes<nodes * Dim>(&row[0][0], nodes * Dim, &x[0][0]);
   }
 
   /// A += symmetric element matrices, of which blocks (a, b) with a <= b are given by rows, at K[pair(a, b)].

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/core/pack.hpp"
+#include "tunica/core/types.hpp"
 
 #include <cstddef>
 
@@ -10,12 +11,13 @@ namespace tunica::fem {
 
 namespace detail {
 
-/// In place: number j of row i goes to place i of row j. log2 W steps of exchanges [EKLUNDH72].
-template <class Part, class Order, int W>
-TUNICA_INLINE void transpose_square(Part (&row)[W]) {
-  if constexpr (W > 1) {
+/// In place: number j of row i goes to place i of row j, in each group of Rows lanes by itself. log2 Rows
+/// steps of exchanges [EKLUNDH72].
+template <class Part, class Order, int W, int Rows>
+TUNICA_INLINE void transpose_square(Part (&row)[Rows]) {
+  if constexpr (Rows > 1) {
 #pragma GCC unroll 8
-    for (int d = 1; d < W; d *= 2) {
+    for (int d = 1; d < Rows; d *= 2) {
       Order low, high;  // lanes of the two rows, those of the second from W on
 #pragma GCC unroll 16
       for (int l = 0; l < W; ++l) {
@@ -23,7 +25,7 @@ TUNICA_INLINE void transpose_square(Part (&row)[W]) {
         high[l] = (l & d) == 0 ? l + d : W + l;
       }
 #pragma GCC unroll 16
-      for (int i = 0; i < W; ++i) {
+      for (int i = 0; i < Rows; ++i) {
         if ((i & d) != 0) continue;
         const Part a = row[i], b = row[i + d];
         row[i] = __builtin_shuffle(a, b, low);
@@ -84,6 +86,42 @@ TUNICA_INLINE void rows_to_lanes(const typename Lanes<S>::type* from, std::size_
         }
       }
     }
+  }
+}
+
+/// True if triples_to_lanes() works for S: double in registers of four lanes or more.
+template <class S>
+inline constexpr bool has_wide_registers = false;
+template <int N, int W>
+inline constexpr bool has_wide_registers<Pack<double, N, W>> = W >= 4;
+
+/// Lane l of to[c] = values[3 node(l) + c], c < 3. Four numbers are read at once, so only three at `last`,
+/// the last node there is.
+template <class S, class Node>
+TUNICA_INLINE void triples_to_lanes(const double* values, Index last, Node&& node, S (&to)[3]) {
+  using Four = typename registers::Register<double, 4>::type;
+  constexpr int W = S::size / S::parts;
+  const auto load = [&](Index n) {
+    const double* const from = values + std::ptrdiff_t{3} * n;
+    Four x;
+    if (n != last) [[likely]]
+      __builtin_memcpy(&x, from, sizeof x);
+    else
+      x = Four{from[0], from[1], from[2], 0};
+    return x;
+  };
+  for (int p = 0; p < S::parts; ++p) {
+    typename S::Part row[4];
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+      if constexpr (W == 4)
+        row[i] = load(node(p * W + i));
+      else
+        row[i] =
+            __builtin_shufflevector(load(node(p * W + i)), load(node(p * W + i + 4)), 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    detail::transpose_square<typename S::Part, typename S::Mask::Part, W>(row);
+    for (int c = 0; c < 3; ++c) to[c].part[p] = row[c];
   }
 }
 

@@ -70,11 +70,10 @@ using P1Assembly = BlockAssembly<mesh::Tet4, 1>;
 namespace detail {
 
 /// kernel(pack, map) for all tetrahedra; the first one whose volume is not positive, or -1.
-template <class S, class Matrix, class Kernel>
-[[nodiscard]] Index p1_assemble(const P1Assembly& assembly, const Points<3>& x, const Matrix& A,
-                                Kernel&& kernel) {
+template <class S, class Kernel>
+[[nodiscard]] Index p1_assemble(const P1Assembly& assembly, const Points<3>& x, Kernel&& kernel) {
   std::atomic<bool> sound{true};
-  assembly.for_each_pack<Lanes<S>::count>(A, [&](const auto& pack) {
+  assembly.for_each_pack<Lanes<S>::count>([&](const auto& pack) {  // rows are short: nothing to fetch ahead
     S corner[4][3];
     assembly.gather(pack, x, corner);
     const P1Map<S> map = p1_map(corner);
@@ -102,7 +101,7 @@ template <class S, class Matrix, class Kernel>
 /// A is of no use when there is one. S is the scalar of the kernel: double or a pack.
 template <class S = Pack<double>, class Matrix>
 [[nodiscard]] Index add_laplacian(const P1Assembly& assembly, const Points<3>& x, double factor, Matrix& A) {
-  return detail::p1_assemble<S>(assembly, x, A, [&](const auto& pack, const P1Map<S>& map) {
+  return detail::p1_assemble<S>(assembly, x, [&](const auto& pack, const P1Map<S>& map) {
     S K[10][1];
     p1_laplacian(map, S(factor), K);
     assembly.add_symmetric(pack, K, A);
@@ -114,7 +113,7 @@ template <class S = Pack<double>, class Matrix>
 template <class S = Pack<double>, class Matrix>
 [[nodiscard]] Index add_convection_diffusion(const P1Assembly& assembly, const Points<3>& x, double viscosity,
                                              const Points<3>& velocity, Matrix& A) {
-  return detail::p1_assemble<S>(assembly, x, A, [&](const auto& pack, const P1Map<S>& map) {
+  return detail::p1_assemble<S>(assembly, x, [&](const auto& pack, const P1Map<S>& map) {
     S w[4][3], K[16][1];
     assembly.gather(pack, velocity, w);
     p1_convection_diffusion(map, S(viscosity), w, K);
