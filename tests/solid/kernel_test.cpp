@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: MIT
+#include "tunica/solid/kernel.hpp"
+#include "tunica/core/counted.hpp"
+#include "tunica/core/dual.hpp"
+#include "tunica/core/pack_math.hpp"
+#include "tunica/fem/shape_quadratic.hpp"
+#include "tunica/fem/shape_wedge.hpp"
+#include "tunica/solid/compressible_laws.hpp"
+#include "tunica/solid/fibre_laws.hpp"
+#include "tunica/solid/hyperelastic.hpp"
+#include "tunica/solid/laws.hpp"
+#include "tunica/solid/volumetric.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <string>
+#include <type_traits>
+
+using namespace tunica;
+using namespace tunica::solid;
+
+namespace {
+
+/// Nodes of the reference cell, or of a cube or prism of side 1.
+template <class C>
+std::array<std::array<double, C::dim>, C::nodes> unit_cell() {
+  std::array<std::array<double, C::dim>, C::nodes> x{};
+  const auto mean = [&](std::size_t to, const auto& of, std::size_t count) {
+    for (std::size_t i = 0; i < C::dim; ++i) {
+      x[to][i] = 0;
+      for (std::size_t k = 0; k < count; ++k)
+        x[to][i] += x[static_cast<std::size_t>(of[k])][i] / static_cast<double>(count);
+    }
+  };
+  if constexpr (mesh::Quadratic<C>) {
+    const auto corners = unit_cell<typename C::Linear>();
+    std::copy(corners.begin(), corners.end(), x.begin());
+    for (const auto& e : C::edges) mean(static_cast<std::size_t>(e[2]), e, 2);
+    for (std::size_t f = 0; f < C::face_centres.size(); ++f)
+      mean(static_cast<std::size_t>(C::face_centres[f]), C::Linear::faces[f], C::Linear::faces[f].size());
+    if constexpr (C::nodes == 27 || C::nodes == 9) {
+      std::array<int, C::Linear::nodes> all{};
+      for (std::size_t a = 0; a < all.size(); ++a) all[a] = static_cast<int>(a);
+      mean(C::nodes - 1, all, all.size());
+    }
+  } else if constexpr (C::nodes == C::dim + 1) {
+    for (std::size_t i = 0; i < C::dim; ++i) x[i + 1][i] = 1;
+  } else if constexpr (C::nodes == 6) {
+    for (std::size_t k = 0; k < 2; ++k)
+      x[3 * k + 1][0] = x[3 * k + 2][1] = 1,
+                x[3 * k][2] = x[3 * k + 1][2] = x[3 * k + 2][2] = static_cast<double>(k);
+  } else {
+    for (std::size_t a = 0; a < C::nodes; ++a)
+      for (std::size_t i = 0; i < C::dim; ++i)
+        x[a][i] = 0.5 * (fem::detail::corners<C::dim, C::nodes>[a][i] + 1);
+  }
+  return x;
+}
+
+/// Distorted cells under large displacements, another in every lane and for every `seed`.
+template <class K, class S>
+struct State {
+  typename K::template Nodal<S> X, u, v;
+
+  explicit State(double seed = 0) {
+    using C = typename K::Cell;
+    const auto x = unit_cell<C>();
+    for (int a = 0; a < K::nodes; ++a)
+      for (int i = 0; i < K::dim; ++i) {
+        const auto wave = [&](double k, int lane) { return std::sin(k * a + 2.1 * i + 0.7 * lane + seed); };
+        const double at = x[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)];
+        set(X[a][i], [&](int lane) { return at + 0.04 * wave(1.3, lane); });
+        set(u[a][i], [&](int lane) { return 0.1 * at * wave(0, lane) + 0.05 * wave(2.3, lane); });
+        set(v[a][i], [&](int lane) { return wave(3.1, lane); });
+      }
+  }
+
+ private:
+  template <class F>
+  static void set(S& to, F f) {
+    if constexpr (Lanes<S>::count > 1)
+      to = S::generate(f);
+    else
+      to = S(f(0));
+  }
+};
+
+/// Two fibres that turn from point to point.
+template <class Law, class S, int Points>
+std::array<PointOf<Law, S>, Points> fibres() {
+  std::array<PointOf<Law, S>, Points> data;
+  if constexpr (needs_point<Law>)
+    for (std::size_t q = 0; q < Points; ++q)
+      for (std::size_t family = 0; family < 2; ++family) {
+        const double angle = (family == 0 ? 0.5 : -0.5) + 0.1 * static_cast<double>(q);
+        data[q].set(family, {S(std::cos(angle)), S(std::sin(angle)), S(0)});
+      }
+  return data;
+}
+
+/// The block (a, b) of a tangent, i and k.
+template <class K>
+double entry(const typename K::template Tangent<double>& t, int a, int b, int i, int k) {
+  if (K::Places::count == K::nodes * K::nodes || a <= b) return t.K[K::Places::place(a, b)][K::dim * i + k];
+  return t.K[K::Places::place(b, a)][K::dim * k + i];
+}
+
+struct Errors {
+  double energy = 0, tangent = 0, action = 0;
+};
+
+/// f against the derivative of the energy, K v and the action against that of f, along v; relative.
+template <class K, class Law>
+Errors against_duals(const Law& law) {
+  using D = Dual<double, 1>;
+  Errors worst;
+  for (int seed = 0; seed < 3; ++seed) {
+    const State<K, double> at(seed);
+    typename K::template Nodal<D> X, u;
+    for (int a = 0; a < K::nodes; ++a)
+      for (int i = 0; i < K::dim; ++i) X[a][i] = at.X[a][i], u[a][i] = at.u[a][i], u[a][i].d[0] = at.v[a][i];
+    const auto data = fibres<Law, double, K::points>();
+    const auto dual_data = fibres<Law, D, K::points>();
+    auto t = std::make_unique<typename K::template Tangent<double>>();
+    typename K::template Forces<D> f;
+    typename K::template Nodal<double> Kv;
+    K::tangent(law, at.X, at.u, data.data(), *t);
+    K::forces(law, X, u, dual_data.data(), f);
+    K::action(law, at.X, at.u, data.data(), at.v, Kv);
+    REQUIRE(t->smallest_J > 0.2);
+    double scale = 0, work = 0;
+    for (int a = 0; a < K::nodes; ++a)
+      for (int i = 0; i < K::dim; ++i) {
+        scale = std::max(scale, std::abs(f.f[a][i].d[0]));
+        work += t->f[a][i] * at.v[a][i];
+      }
+    for (int a = 0; a < K::nodes; ++a)
+      for (int i = 0; i < K::dim; ++i) {
+        double product = 0;
+        for (int b = 0; b < K::nodes; ++b)
+          for (int k = 0; k < K::dim; ++k) product += entry<K>(*t, a, b, i, k) * at.v[b][k];
+        worst.tangent = std::max(worst.tangent, std::abs(product - f.f[a][i].d[0]) / scale);
+        worst.action = std::max(worst.action, std::abs(Kv[a][i] - f.f[a][i].d[0]) / scale);
+        worst.energy = std::max(worst.energy, std::abs(t->f[a][i] - f.f[a][i].value) / scale);
+      }
+    if constexpr (!K::bar) {
+      const D W = K::energy(law, X, u, dual_data.data());
+      worst.energy = std::max(worst.energy, std::abs(W.d[0] - work) / scale);
+    }
+  }
+  return worst;
+}
+
+/// The largest difference of a lane from the same element in double, of the largest entry.
+template <class K, class S, class Law>
+double lanes_against_double(const Law& law) {
+  using P = typename K::template Tangent<S>;
+  auto pack = std::make_unique<P>();
+  auto one = std::make_unique<typename K::template Tangent<double>>();
+  const State<K, S> at;
+  const auto data = fibres<Law, S, K::points>();
+  const auto single = fibres<Law, double, K::points>();
+  K::tangent(law, at.X, at.u, data.data(), *pack);
+  double worst = 0;
+  for (int l = 0; l < Lanes<S>::count; ++l) {
+    State<K, double> lane;
+    for (int a = 0; a < K::nodes; ++a)
+      for (int i = 0; i < K::dim; ++i)
+        lane.X[a][i] = static_cast<double>(at.X[a][i][l]), lane.u[a][i] = static_cast<double>(at.u[a][i][l]);
+    K::tangent(law, lane.X, lane.u, single.data(), *one);
+    double scale = 0;
+    for (const auto& block : one->K)
+      for (const double k : block) scale = std::max(scale, std::abs(k));
+    for (int p = 0; p < K::Places::count; ++p)
+      for (int k = 0; k < K::dim * K::dim; ++k)
+        worst = std::max(worst, std::abs(static_cast<double>(pack->K[p][k][l]) - one->K[p][k]) / scale);
+    for (int a = 0; a < K::nodes; ++a)
+      for (int i = 0; i < K::dim; ++i)
+        worst = std::max(worst, std::abs(static_cast<double>(pack->f[a][i][l]) - one->f[a][i]) / scale);
+  }
+  return worst;
+}
+
+constexpr CompressibleNeoHooke neo_hooke{.mu = 1, .lambda = 3};
+constexpr Hyperelastic pair{MooneyRivlin{.c10 = 0.4, .c01 = 0.2}, SimoTaylor{.kappa = 40}};
+constexpr Hyperelastic wall{HolzapfelGasserOgden{.c = 1, .k1 = 2, .k2 = 0.8}, Quadratic{.kappa = 40}};
+
+std::size_t allocations = 0;  // of this program, by operator new
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const auto a = static_cast<std::size_t>(alignment);
+  if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+
+#define TUNICA_CELLS                                                                                  \
+  mesh::Tri3, mesh::Tri6, mesh::Quad4, mesh::Quad9, mesh::Tet4, mesh::Tet10, mesh::Hex8, mesh::Hex20, \
+      mesh::Hex27, mesh::Wedge6
+
+TEST_SUITE("unit") {
+  TEST_CASE_TEMPLATE("solid: kernel forces and tangents and actions are derivatives on every cell", C,
+                     TUNICA_CELLS) {
+    const auto check = [](const std::string& label, const Errors& e) {
+      MESSAGE(C::nodes << " nodes in " << C::dim << "-D, " << label << ": energy " << e.energy << ", tangent "
+                       << e.tangent << ", action " << e.action);
+      CHECK(e.energy < 1e-12);
+      CHECK(e.tangent < 1e-12);
+      CHECK(e.action < 1e-12);
+    };
+    check("pointwise", against_duals<Kernel<C>>(neo_hooke));
+    check("mean volume", against_duals<Kernel<C, MeanVolume>>(pair));
+    if constexpr (C::nodes != C::dim + 1) check("F-bar", against_duals<Kernel<C, FBar>>(pair));
+  }
+
+  TEST_CASE("solid: kernels of fibre laws have their derivatives") {
+    for (const auto& e :
+         {against_duals<Kernel<mesh::Hex8>>(wall), against_duals<Kernel<mesh::Hex8, MeanVolume>>(wall),
+          against_duals<Kernel<mesh::Tet10>>(wall), against_duals<Kernel<mesh::Hex8, FBar>>(wall)}) {
+      CHECK(e.energy < 1e-12);
+      CHECK(e.tangent < 1e-12);
+      CHECK(e.action < 1e-12);
+    }
+  }
+
+  TEST_CASE("solid: lanes of kernels are the elements that they hold") {
+    const auto check = [](const std::string& label, double wide, double plain, double single) {
+      MESSAGE(label << ": packs of double " << wide << ", plain ones " << plain << ", of float " << single);
+      CHECK(wide < 1e-13);
+      CHECK(plain < 1e-13);
+      CHECK(single < 1e-5);
+    };
+    const auto all = [&]<class K>(K, const std::string& label, const auto& law) {
+      check(label, lanes_against_double<K, Pack<double>>(law),
+            lanes_against_double<K, Pack<double, 4, 1>>(law), lanes_against_double<K, Pack<float>>(law));
+    };
+    all(Kernel<mesh::Hex8>{}, "Hex8, neo-Hooke", neo_hooke);
+    all(Kernel<mesh::Hex8, MeanVolume>{}, "Hex8, fibres, mean volume", wall);
+    all(Kernel<mesh::Hex8, FBar>{}, "Hex8, Mooney-Rivlin, F-bar", pair);
+    all(Kernel<mesh::Tet10>{}, "Tet10, fibres", wall);
+    all(Kernel<mesh::Quad4, FBar>{}, "Quad4, Mooney-Rivlin, F-bar", pair);
+  }
+
+  TEST_CASE("solid: the kernel with a mean volume takes the pressure that Newton predicts") {
+    using K = Kernel<mesh::Hex8, MeanVolume>;
+    const State<K, double> at;
+    K::Tangent<double> exact, predicted, other;
+    K::tangent(pair, at.X, at.u, nullptr, exact);
+    K::tangent(pair, at.X, at.u, nullptr, exact.p, predicted);
+    K::tangent(pair, at.X, at.u, nullptr, exact.p + 7, other);
+    CHECK(exact.bulk == doctest::Approx(pair.volumetric.curvature(exact.theta)));
+    double same = 0, turned = 0;
+    for (int p = 0; p < K::Places::count; ++p)
+      for (int k = 0; k < 9; ++k) {
+        same = std::max(same, std::abs(predicted.K[p][k] - exact.K[p][k]));
+        turned = std::max(turned, std::abs(other.K[p][k] - exact.K[p][k]));
+      }
+    CHECK(same < 1e-12);
+    CHECK(turned > 0.1);
+    // What 7 Pa more leave in K is 7 d2v/du2: the derivative of slope = dv/du.
+    constexpr double h = 1e-6;
+    for (int b = 0; b < 8; b += 3) {
+      State<K, double> moved[2];
+      K::Forces<double> f[2];
+      for (int side = 0; side < 2; ++side) {
+        moved[side].u[b][1] += side == 0 ? -h : h;
+        K::forces(pair, moved[side].X, moved[side].u, nullptr, f[side]);
+      }
+      for (int a = 0; a <= b; ++a)
+        for (int i = 0; i < 3; ++i)
+          CHECK(entry<K>(other, a, b, i, 1) - entry<K>(exact, a, b, i, 1) ==
+                doctest::Approx(7 * (f[1].slope[a][i] - f[0].slope[a][i]) / (2 * h)).epsilon(1e-6));
+    }
+  }
+
+  TEST_CASE("solid: a plane element is a brick of unit depth held from moving across") {
+    using Plane = Kernel<mesh::Quad4>;
+    using Brick = Kernel<mesh::Hex8>;
+    const State<Plane, double> at;
+    State<Brick, double> deep;
+    for (int a = 0; a < 8; ++a) {
+      for (int i = 0; i < 2; ++i) deep.X[a][i] = at.X[a % 4][i], deep.u[a][i] = at.u[a % 4][i];
+      deep.X[a][2] = a / 4, deep.u[a][2] = 0;
+    }
+    Plane::Tangent<double> flat;
+    Brick::Tangent<double> brick;
+    Plane::tangent(pair, at.X, at.u, nullptr, flat);
+    Brick::tangent(pair, deep.X, deep.u, nullptr, brick);
+    CHECK(Plane::energy(pair, at.X, at.u, nullptr) ==
+          doctest::Approx(Brick::energy(pair, deep.X, deep.u, nullptr)).epsilon(1e-13));
+    for (int a = 0; a < 4; ++a)
+      for (int i = 0; i < 2; ++i) {
+        CHECK(flat.f[a][i] == doctest::Approx(brick.f[a][i] + brick.f[a + 4][i]).epsilon(1e-12));
+        for (int b = 0; b < 4; ++b)
+          for (int k = 0; k < 2; ++k) {
+            double sum = 0;
+            for (const int c : {a, a + 4})
+              for (const int d : {b, b + 4}) sum += entry<Brick>(brick, c, d, i, k);
+            CHECK(entry<Plane>(flat, a, b, i, k) == doctest::Approx(sum).epsilon(1e-11));
+          }
+      }
+  }
+
+  TEST_CASE("solid: kernels spend the flops that their algorithm has and allocate nothing") {
+    const auto flops = []<class K>(K) {
+      State<K, Counted> at;
+      typename K::template Tangent<Counted> t;
+      Counted::count() = {};
+      K::tangent(neo_hooke, at.X, at.u, nullptr, t);
+      return Counted::count();
+    };
+    const FlopCount hex = flops(Kernel<mesh::Hex8>{}), tet = flops(Kernel<mesh::Tet10>{});
+    MESSAGE("residual and tangent of neo-Hooke: Hex8 " << hex.total() << " flop, Tet10 " << tet.total());
+    CHECK(hex.total() <= 32120);
+    CHECK(tet.total() <= 21796);
+    CHECK(hex.function == 8);  // one ln J a point
+
+    using P = Pack<double>;
+    const auto silent = []<class K>(K, const auto& law) {
+      static_assert(!std::is_polymorphic_v<K> && !std::is_polymorphic_v<std::remove_cvref_t<decltype(law)>>);
+      const auto at = std::make_unique<State<K, P>>();
+      const auto t = std::make_unique<typename K::template Tangent<P>>();
+      const auto f = std::make_unique<typename K::template Forces<P>>();
+      const auto data = fibres<std::remove_cvref_t<decltype(law)>, P, K::points>();
+      typename K::template Nodal<P> Kv;
+      const std::size_t before = allocations;
+      K::tangent(law, at->X, at->u, data.data(), *t);
+      K::forces(law, at->X, at->u, data.data(), *f);
+      K::action(law, at->X, at->u, data.data(), at->v, Kv);
+      return allocations - before;
+    };
+    CHECK(allocations > 0);
+    CHECK(silent(Kernel<mesh::Hex8>{}, wall) == 0);
+    CHECK(silent(Kernel<mesh::Hex8, MeanVolume>{}, wall) == 0);
+    CHECK(silent(Kernel<mesh::Hex27, FBar>{}, pair) == 0);
+    CHECK(silent(Kernel<mesh::Tet10>{}, neo_hooke) == 0);
+  }
+
+  TEST_CASE("solid: an element under a stored deformation is the element free of it") {
+    const auto check = [&]<class K>(K) {
+      const State<K, double> at;
+      State<K, double> relaxed;  // X_0 = F_p^-1 X with the same current nodes
+      const Tensor<double> F_p{.m = {1.1, .1, 0, -.05, .9, .02, .03, 0, 1.2}}, back = inverse(F_p);
+      for (int a = 0; a < K::nodes; ++a) {
+        const auto X = product(back, Vector3<double>{at.X[a][0], at.X[a][1], at.X[a][2]});
+        for (int i = 0; i < 3; ++i) {
+          relaxed.X[a][i] = X[static_cast<std::size_t>(i)];
+          relaxed.u[a][i] = at.X[a][i] + at.u[a][i] - relaxed.X[a][i];
+        }
+      }
+      std::array<Tensor<double>, K::points> stored;
+      stored.fill(F_p);
+      typename K::template Tangent<double> t, want;
+      K::tangent(pair, at.X, at.u, nullptr, stored.data(), t);
+      K::tangent(pair, relaxed.X, relaxed.u, nullptr, want);
+      CHECK(K::energy(pair, at.X, at.u, nullptr, stored.data()) ==
+            doctest::Approx(K::energy(pair, relaxed.X, relaxed.u, nullptr)).epsilon(1e-12));
+      double worst = 0, scale = 0;
+      for (int p = 0; p < K::Places::count; ++p)
+        for (int k = 0; k < 9; ++k) {
+          worst = std::max(worst, std::abs(t.K[p][k] - want.K[p][k]));
+          scale = std::max(scale, std::abs(want.K[p][k]));
+        }
+      for (int a = 0; a < K::nodes; ++a)
+        for (int i = 0; i < 3; ++i) worst = std::max(worst, std::abs(t.f[a][i] - want.f[a][i]));
+      CHECK(worst < 1e-13 * scale);
+    };
+    check(Kernel<mesh::Hex8>{});
+    check(Kernel<mesh::Hex8, MeanVolume>{});
+    check(Kernel<mesh::Tet10>{});
+  }
+
+  TEST_CASE("solid: the kernel tells an inverted element in its lane") {
+    using K = Kernel<mesh::Hex8>;
+    using P = Pack<double>;
+    State<K, P> at;
+    for (int i = 0; i < 3; ++i) at.u[6][i].set(1, -1.6);
+    auto f = std::make_unique<K::Forces<P>>();
+    K::forces(neo_hooke, at.X, at.u, nullptr, *f);
+    for (int l = 0; l < P::size; ++l) CHECK((f->smallest_J[l] > 0) == (l != 1));
+  }
+}
