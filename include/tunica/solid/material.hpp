@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/core/dual.hpp"
+#include "tunica/core/jet.hpp"
 #include "tunica/core/tensor.hpp"
 
 #include <array>
@@ -136,9 +137,11 @@ template <Material Law, class S>
   }
 }
 
-/// P and A by duals of what the law gives: to hold written ones against.
+/// P and A by nested duals of the energy, or duals of the stress: to hold all other ways against.
 template <Material Law, class S>
-[[nodiscard]] Response<S> dual_response(const Law& law, const Tensor<S>& F, const PointOf<Law, S>& point) {
+requires(GivesEnergy<Law, S> || GivesStress<Law, S>)
+    [[nodiscard]] Response<S> dual_response(const Law& law, const Tensor<S>& F,
+                                            const PointOf<Law, S>& point) {
   using D = Dual<S, 9>;
   const Tensor<D> P = [&] {
     if constexpr (GivesEnergy<Law, S>)
@@ -173,7 +176,15 @@ template <Material Law, class S>
     }
     return r;
   } else {
-    return dual_response(law, F, point);
+    using J = Jet<S, 9>;
+    Tensor<J> x;
+    for (std::size_t p = 0; p < 9; ++p) x.m[p] = J::variable(F.m[p], static_cast<int>(p));
+    const J W = energy(law, x, cast_point<Law, J, S>(point));
+    Response<S> r;
+    r.P.m = W.d;
+    for (std::size_t p = 0; p < 9; ++p)
+      for (std::size_t q = p; q < 9; ++q) r.A[9 * p + q] = r.A[9 * q + p] = W.h[J::pair(p, q)];
+    return r;
   }
 }
 
