@@ -5,11 +5,27 @@
 #include "tunica/io/vtp.hpp"
 #include "tunica/io/vtu.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 using namespace tunica;
 using namespace tunica::examples;
+
+namespace {
+
+/// What `patch` counts in the file of the surface: with triangles the figures of the surface say it.
+void tell_patches(const mesh::HexMesh& hexes, Json& report) {
+  for (std::size_t p = 0; p < hexes.patches.size(); ++p) {
+    Json patch;
+    patch["patch"] = p, patch["name"] = hexes.patches[p].name;
+    patch["quadrilaterals"] = hexes.patches[p].faces.cols();
+    report["surface"]["patches"].push(std::move(patch));
+  }
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   ImageOptions options;
@@ -32,6 +48,7 @@ int main(int argc, char** argv) {
     Stages stage(fill_stages(fill.fill) + 1);
     Json report;
     const auto vessel = fill_image(options, fill, stage, report);
+    tell_patches(vessel.hexes, report);
     if (!report_file.empty()) tell_quality(vessel, report);
     OutputFiles files;
     stage("write", [&] {

@@ -58,6 +58,7 @@ TEST_SUITE("job") {
       CHECK(r({"fill", "inverted"}) == 0);
       CHECK(r({"fill", "smallest_scaled_jacobian"}) >= 0.2);
       CHECK(std::abs(r({"fill", "volume"}) / r({"cut_volume"}) - 1) < 0.005);
+      CHECK(r({"surface", "patches", "quadrilaterals"}) > 0);
       CHECK(faults(*checker, folder, "a.vtu") == "");
       CHECK(faults(*checker, folder, "a.surface.vtp --closed") == "");
     }
