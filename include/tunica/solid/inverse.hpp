@@ -4,9 +4,13 @@
 #pragma once
 
 #include "tunica/core/dual.hpp"
+#include "tunica/core/expect.hpp"
+#include "tunica/core/tensor.hpp"
 #include "tunica/fem/assembly.hpp"
 #include "tunica/la/direct.hpp"
 #include "tunica/la/newton.hpp"
+#include "tunica/solid/cell_data.hpp"
+#include "tunica/solid/hyperelastic.hpp"
 #include "tunica/solid/statics.hpp"
 
 #include <Eigen/Core>
@@ -14,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 namespace tunica::solid {
@@ -38,6 +43,52 @@ struct [[nodiscard]] InverseReport {
 
 namespace detail {
 
+/// A law whose fibres are known on the deformed shape: it reads them as they are free of load, F^-1 a of
+/// unit length.
+template <class Law>
+struct CarriedBack {
+  Law law;
+
+  template <class S>
+  using Point = PointOf<Law, S>;
+
+  template <class S>
+  [[nodiscard]] Tensor<S> stress(const Tensor<S>& F, const Point<S>& given) const {
+    using std::sqrt;
+    const Tensor<S> cof = cofactor(F);  // J F^-T
+    Point<S> free = given;
+    for (std::size_t family = 0; 3 * family < given.m.size(); ++family) {
+      const Vector3<S> a = given[family];
+      Vector3<S> b;
+      for (std::size_t j = 0; j < 3; ++j) b[j] = cof.m[j] * a[0] + cof.m[3 + j] * a[1] + cof.m[6 + j] * a[2];
+      const S square = dot(b, b);
+      if (!(square > S(0))) continue;  // a family that is not there
+      const S scale = S(1) / sqrt(square);
+      free.set(family, {b[0] * scale, b[1] * scale, b[2] * scale});
+    }
+    return solid::stress(law, F, free);
+  }
+};
+
+/// The material of a cell for the inverse problem, and its data.
+template <class Material>
+[[nodiscard]] auto carried_back(const Material& material) {
+  if constexpr (requires { typename decltype(material.isochoric)::template Point<double>; }) {
+    using Law = std::remove_cvref_t<decltype(material.isochoric)>;
+    if constexpr (needs_point<Law>)
+      return Hyperelastic{CarriedBack<Law>{material.isochoric}, material.volumetric};
+    else
+      return material;
+  } else {
+    static_assert(!needs_point<Material>, "fibres in the inverse problem need a pair of laws: Hyperelastic");
+    return material;
+  }
+}
+template <class Law>
+[[nodiscard]] CellData<CarriedBack<Law>> carried_back(const CellData<Law>& data) {
+  return {.points = data.points};
+}
+
 /// r(w) = f_int(X = x - w, u = w) - load f_ext with x and f_ext known; w is the displacement that the
 /// loads have caused, zero at fixed unknowns.
 template <class Wall>
@@ -56,7 +107,7 @@ class InverseProblem {
     r.setZero(w.size());
     assembly_.for_each_cell([&](Index e) {
       const Nodal<double> we = body.gather(e, w);
-      const auto element = Element::forces(body.material(e), Nodal<double>(body.reference(e) - we), we);
+      const auto element = forces<double>(e, body.reference(e) - we, we);
       smallest_J_[static_cast<std::size_t>(e)] = element.smallest_J;
       assembly_.add(e, element.force, r);
     });
@@ -81,7 +132,7 @@ class InverseProblem {
           u(i, a) = D::variable(we(i, a), 3 * a + i);
           X(i, a) = D(x(i, a)) - u(i, a);
         }
-      const auto element = Element::forces(body.material(e), X, u);
+      const auto element = forces<D>(e, X, u);
       Eigen::Matrix<double, size, size> K;
       for (int r = 0; r < size; ++r)
         for (int c = 0; c < size; ++c) K(r, c) = element.force[r].d[static_cast<std::size_t>(c)];
@@ -106,6 +157,17 @@ class InverseProblem {
   using Nodal = typename Element::template Nodal<S>;
   using D = Dual<double, size>;
 
+  template <class S>
+  [[nodiscard]] auto forces(Index e, const Nodal<S>& X, const Nodal<S>& u) const {
+    const auto& body = wall_.body();
+    const auto material = carried_back(body.material(e));
+    if constexpr (std::is_same_v<std::remove_const_t<decltype(material)>,
+                                 std::remove_cvref_t<decltype(body.material(e))>>)
+      return Element::forces(material, X, u);
+    else
+      return Element::forces(material, X, u, carried_back(body.data(e)));
+  }
+
   const Wall& wall_;
   fem::Assembly<typename Wall::Cell, 3> assembly_;
   Eigen::VectorXd external_;
@@ -117,8 +179,8 @@ class InverseProblem {
 
 /// `wall` is composed on the mesh of the known shape, with the loads that act there as end values: its
 /// follower pressures, dead forces and fixed unknowns count, prescribed displacements do not. Supports are
-/// relaxed in the known shape. `diverged` with the shape of the load reached if the steps become too
-/// small: a shape free of stress need not exist.
+/// relaxed in the known shape, and fibres are given on it. `diverged` with the shape of the load reached if
+/// the steps become too small: a shape free of stress need not exist.
 ///   auto image = ...;  Statics loaded{image, law};  loaded.fix(...);  loaded.pressure(...);
 ///   const auto free = unloaded_shape(loaded);  image.nodes = free.nodes;  Statics wall{image, law};
 /// The tangent is not symmetric.
@@ -126,6 +188,7 @@ template <la::LinearSolver Solver = la::Lu, class Wall>
 [[nodiscard]] InverseReport unloaded_shape(const Wall& wall, const InverseOptions& options = {}) {
   static_assert(!Solver::symmetric,
                 "the tangent of the inverse problem is not symmetric: give Lu or the like");
+  TUNICA_EXPECT(wall.body().laws().prestress().empty(), "the unloaded shape of a body without prestress");
   InverseReport report;
   detail::InverseProblem<Wall> problem(wall);
   la::Newton<Solver> newton(options.newton);

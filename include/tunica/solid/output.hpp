@@ -8,6 +8,7 @@
 #include "tunica/solid/stress.hpp"
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 #include <cmath>
 #include <cstddef>
@@ -37,38 +38,56 @@ struct WallFields {
   }
 };
 
-/// J of each cell: its current volume over that of the reference. u: 3 * nodes [m].
+namespace detail {
+/// visit(q, F, volume) at the points of a cell: the whole deformation, F_p of a prestress included, and the
+/// current volume of the point [m3].
+template <mesh::Cell C, class Material, class Visit>
+void for_each_point(const Body<C, Material>& body, Index e, const Eigen::VectorXd& u, const Visit& visit) {
+  using Element = typename Body<C, Material>::Element;
+  const auto X = body.reference(e), ue = body.gather(e, u);
+  const auto data = body.data(e);
+  const auto volume = Element::stress(body.material(e), X, ue, data).volume;
+  const auto increment = Element::deformation(X, ue);
+  for (std::size_t q = 0; q < increment.size(); ++q) {
+    Eigen::Matrix3d F = increment[q];
+    if (data.prestress != nullptr) F = (F * data.prestress[q]).eval();
+    visit(q, F, volume[q]);
+  }
+}
+}  // namespace detail
+
+/// J of each cell: its current volume over the one free of stress. u: 3 * nodes [m].
 template <mesh::Cell C, class Material>
 [[nodiscard]] Eigen::VectorXd cell_J(const Body<C, Material>& body, const Eigen::VectorXd& u) {
-  using Rule = fem::Gauss<C, C::nodes == 4 ? 1 : C::nodes == 8 ? 3 : C::nodes == 10 ? 2 : 5>;
-  using Tables = fem::Tables<fem::Lagrange<C>, Rule>;
   Eigen::VectorXd J(body.mesh().cell_count());
   for (Index e = 0; e < body.mesh().cell_count(); ++e) {
-    double volume = 0, current = 0;
-    const auto X = body.reference(e);
-    const auto x = (X + body.gather(e, u)).eval();
-    for (std::size_t q = 0; q < Rule::size; ++q) {
-      volume += Rule::weights[q] * fem::map_point<double, 3>(X, Tables::gradients[q]).det;
-      current += Rule::weights[q] * fem::map_point<double, 3>(x, Tables::gradients[q]).det;
-    }
-    J[e] = current / volume;
+    double free = 0, current = 0;
+    detail::for_each_point(body, e, u, [&](std::size_t, const Eigen::Matrix3d& F, double volume) {
+      current += volume;
+      free += volume / F.determinant();
+    });
+    J[e] = current / free;
   }
   return J;
 }
 
-/// |F a| at the middle of each cell, a its fibre in the reference: 3 x cells, of any length but zero.
+/// |F a| of each cell, the mean over its current volume. fibres: 3 x cells, on the mesh, of any length but
+/// zero; under a prestress a = F_p^-1 fibre, of unit length.
 template <mesh::Cell C, class Material>
 [[nodiscard]] Eigen::VectorXd cell_fibre_stretch(const Body<C, Material>& body, const Eigen::VectorXd& u,
                                                  const Points<3>& fibres) {
   TUNICA_EXPECT(fibres.cols() == body.mesh().cell_count(), "one fibre a cell");
-  using Rule = fem::Gauss<C, 1>;
-  using Tables = fem::Tables<fem::Lagrange<C>, Rule>;
   Eigen::VectorXd stretch(body.mesh().cell_count());
   for (Index e = 0; e < body.mesh().cell_count(); ++e) {
-    const auto map = fem::map_point<double, 3>(body.reference(e), Tables::gradients[0]);
-    const Vec3 a = fibres.col(e);
-    const Vec3 Fa = a + body.gather(e, u) * (map.gradient.transpose() * a);
-    stretch[e] = Fa.norm() / a.norm();
+    const auto* const stored = body.data(e).prestress;
+    double sum = 0, current = 0;
+    detail::for_each_point(body, e, u, [&](std::size_t q, const Eigen::Matrix3d& F, double volume) {
+      Vec3 a = fibres.col(e);
+      if (stored != nullptr) a = (stored[q].inverse() * a).eval();
+      sum += volume * (F * a).norm() / a.norm();
+      current += volume;
+    });
+    stretch[e] = sum / current;
   }
   return stretch;
 }
