@@ -2,6 +2,7 @@
 // Guccione's exponential of the strains in a fibre frame, transversely isotropic: P and dP/dF in closed form.
 #pragma once
 
+#include "tunica/core/unroll.hpp"
 #include "tunica/solid/fibres.hpp"
 #include "tunica/solid/material.hpp"
 
@@ -45,13 +46,18 @@ struct Guccione {
     const S k = S(C) * exp(at.Q), half = S(0.5) * k;
     const Tensor<S> kFT = k * at.FT, &G = at.G;
     std::array<Tensor<S>, 3> spread;  // of each direction p: sum_m b_mp F'_im F'_jm
-    for (std::size_t p = 0; p < 3; ++p)
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j)
-          for (std::size_t m = 0; m < 3; ++m)
-            spread[p].m[3 * i + j] += S(exponent(m, p)) * G.m[3 * i + m] * G.m[3 * j + m];
+    TUNICA_UNROLL
+    for (std::size_t p = 0; p < 3; ++p) {
+      TUNICA_UNROLL
+      for (std::size_t e = 0; e < 9; ++e) {
+        const std::size_t i = 3 * (e / 3), j = 3 * (e % 3);
+        for (std::size_t m = 0; m < 3; ++m) spread[p].m[e] += S(exponent(m, p)) * G.m[i + m] * G.m[j + m];
+      }
+    }
     std::array<S, 81> local;
-    for (std::size_t a = 0; a < 9; ++a)
+    TUNICA_UNROLL
+    for (std::size_t a = 0; a < 9; ++a) {
+      TUNICA_UNROLL
       for (std::size_t c = a; c < 9; ++c) {
         const std::size_t i = a / 3, p = a % 3, j = c / 3, q = c % 3;
         S A = S(2) * kFT.m[a] * at.FT.m[c] + S(exponent(p, q)) * half * G.m[3 * i + q] * G.m[3 * j + p];
@@ -60,6 +66,7 @@ struct Guccione {
         local[9 * a + c] = A;
         local[9 * c + a] = A;
       }
+    }
     return {.P = product(kFT, transpose(at.axes)), .A = turned(local, at.axes)};
   }
 
@@ -93,18 +100,22 @@ struct Guccione {
   template <class S>
   [[nodiscard]] static std::array<S, 81> turned(const std::array<S, 81>& local, const Tensor<S>& axes) {
     std::array<S, 81> half, A;
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t J = 0; J < 3; ++J)
-        for (std::size_t c = 0; c < 9; ++c)
-          half[9 * (3 * i + J) + c] = axes.m[3 * J] * local[9 * (3 * i) + c] +
-                                      axes.m[3 * J + 1] * local[9 * (3 * i + 1) + c] +
-                                      axes.m[3 * J + 2] * local[9 * (3 * i + 2) + c];
-    for (std::size_t a = 0; a < 9; ++a)
-      for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t L = 0; L < 3; ++L)
-          A[9 * a + 3 * k + L] = axes.m[3 * L] * half[9 * a + 3 * k] +
-                                 axes.m[3 * L + 1] * half[9 * a + 3 * k + 1] +
-                                 axes.m[3 * L + 2] * half[9 * a + 3 * k + 2];
+    TUNICA_UNROLL
+    for (std::size_t a = 0; a < 9; ++a) {
+      const std::size_t i = 9 * (a - a % 3), J = 3 * (a % 3);
+      TUNICA_UNROLL
+      for (std::size_t c = 0; c < 9; ++c)
+        half[9 * a + c] =
+            axes.m[J] * local[i + c] + axes.m[J + 1] * local[i + 9 + c] + axes.m[J + 2] * local[i + 18 + c];
+    }
+    TUNICA_UNROLL
+    for (std::size_t a = 0; a < 9; ++a) {
+      TUNICA_UNROLL
+      for (std::size_t c = 0; c < 9; ++c) {
+        const std::size_t k = 9 * a + c - c % 3, L = 3 * (c % 3);
+        A[9 * a + c] = axes.m[L] * half[k] + axes.m[L + 1] * half[k + 1] + axes.m[L + 2] * half[k + 2];
+      }
+    }
     return A;
   }
 };

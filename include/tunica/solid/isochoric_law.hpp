@@ -2,6 +2,7 @@
 // Isochoric<Law>: a material of the whole F that sees J^-1/3 F in its place, so that it does not see J.
 #pragma once
 
+#include "tunica/core/unroll.hpp"
 #include "tunica/solid/isochoric_part.hpp"
 
 namespace tunica::solid {
@@ -38,7 +39,9 @@ struct Isochoric {
     const S third = double_dot(r.P, F) * S(1. / 3);
     Tensor<S> Y;  // what stands beside g in the dyads: A = s^2 a + g x Y + Y x g + third g_iL g_kJ
     S FaF(0);
+    TUNICA_UNROLL
     for (std::size_t p = 0; p < 9; ++p) {
+      TUNICA_UNROLL
       for (std::size_t q = 0; q < 9; ++q) {
         r.A[9 * p + q] *= ss;
         Y.m[p] += r.A[9 * p + q] * F.m[q];
@@ -46,8 +49,11 @@ struct Isochoric {
       FaF += F.m[p] * Y.m[p];
     }
     const S both = S(1. / 18) * FaF + S(1. / 6) * third;
+    TUNICA_UNROLL
     for (std::size_t p = 0; p < 9; ++p) Y.m[p] = both * g.m[p] - S(1. / 3) * (Y.m[p] + r.P.m[p]);
+    TUNICA_UNROLL
     for (std::size_t p = 0; p < 9; ++p) {
+      TUNICA_UNROLL
       for (std::size_t q = 0; q < 9; ++q)
         r.A[9 * p + q] +=
             g.m[p] * Y.m[q] + Y.m[p] * g.m[q] + third * g.m[3 * (p / 3) + q % 3] * g.m[3 * (q / 3) + p % 3];

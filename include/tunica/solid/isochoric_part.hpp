@@ -2,6 +2,7 @@
 // W, P and A of a law in isochoric invariants, in closed form from its slopes, for any scalar.
 #pragma once
 
+#include "tunica/core/unroll.hpp"
 #include "tunica/solid/energy.hpp"
 #include "tunica/solid/fibres.hpp"
 #include "tunica/solid/material.hpp"
@@ -131,11 +132,13 @@ template <class At, class S>
   const S two_s = at.s + at.s;
   if constexpr (At::reads(Invariant::I1)) {
     const S shift = two_s * at.q1 * S(1. / 3);
+    TUNICA_UNROLL
     for (std::size_t p = 0; p < 9; ++p)
       D[At::place(Invariant::I1)].m[p] = two_s * at.F.m[p] - shift * at.g.m[p];
   }
   if constexpr (At::second) {
     const S ss = at.s * at.s, shift = ss * at.i2 * S(4. / 3);
+    TUNICA_UNROLL
     for (std::size_t p = 0; p < 9; ++p) D[At::place(Invariant::I2)].m[p] = ss * X.m[p] - shift * at.g.m[p];
   }
   for (std::size_t k = 0; k < 2; ++k)
@@ -165,12 +168,14 @@ template <IsochoricEnergy Law, class S>
   const detail::WeightedReading<Law, S> sum(at, W.first);
   Tensor<S> P;
   S shift = sum.q * S(2. / 3);
+  TUNICA_UNROLL
   for (std::size_t p = 0; p < 9; ++p) P.m[p] = sum.B.m[p] + sum.B.m[p];
   if constexpr (At::second) {
     const S w = W.first[At::place(Invariant::I2)] * at.s * at.s;
     P += w * detail::second_slope(at);
     shift += w * at.i2 * S(4. / 3);
   }
+  TUNICA_UNROLL
   for (std::size_t p = 0; p < 9; ++p) P.m[p] -= shift * at.g.m[p];
   return P;
 }
@@ -188,6 +193,7 @@ template <IsochoricEnergy Law, class S>
   Response<S> r;
   Tensor<S> X, b, Y, N = sum.M + sum.M;  // A holds g x Y + Y x g + d_ik N_JL
   S shift = sum.q * S(2. / 3), swap = shift, w2(0), crossed(0);
+  TUNICA_UNROLL
   for (std::size_t p = 0; p < 9; ++p) r.P.m[p] = sum.B.m[p] + sum.B.m[p];
   if constexpr (At::second) {
     X = detail::second_slope(at);
@@ -195,6 +201,7 @@ template <IsochoricEnergy Law, class S>
     w2 = W.first[At::place(Invariant::I2)] * at.s * at.s;
     crossed = w2 + w2;
     const S more = w2 * at.i2 * S(4. / 3);
+    TUNICA_UNROLL
     for (std::size_t p = 0; p < 9; ++p) {
       r.P.m[p] += w2 * X.m[p];
       Y.m[p] = S(-4. / 3) * w2 * X.m[p] + S(2. / 3) * more * g.m[p];
@@ -204,6 +211,7 @@ template <IsochoricEnergy Law, class S>
     shift += more;
     swap += more;
   }
+  TUNICA_UNROLL
   for (std::size_t p = 0; p < 9; ++p) {
     Y.m[p] += S(-4. / 3) * sum.B.m[p] + S(2. / 9) * sum.q * g.m[p];
     r.P.m[p] -= shift * g.m[p];
@@ -213,11 +221,16 @@ template <IsochoricEnergy Law, class S>
   constexpr auto curves = [](std::size_t k) { return detail::curved<Law>(Law::reads[k]); };
   if constexpr (At::curved != 0) {
     D = detail::invariant_slopes(at, X);
-    for (std::size_t k = 0; k < At::count; ++k)
+    TUNICA_UNROLL
+    for (std::size_t k = 0; k < At::count; ++k) {
+      TUNICA_UNROLL
       for (std::size_t l = 0; l < At::count; ++l)
         if (curves(k) && curves(l)) H[k] += W.second[k][l] * D[l];
+    }
   }
-  for (std::size_t p = 0; p < 9; ++p)
+  TUNICA_UNROLL
+  for (std::size_t p = 0; p < 9; ++p) {
+    TUNICA_UNROLL
     for (std::size_t q = p; q < 9; ++q) {
       const std::size_t i = p / 3, J = p % 3, k = q / 3, L = q % 3;
       S A = g.m[p] * Y.m[q] + Y.m[p] * g.m[q] + swap * g.m[3 * i + L] * g.m[3 * k + J];
@@ -226,11 +239,13 @@ template <IsochoricEnergy Law, class S>
         A += crossed * (F.m[p] * F.m[q] + F.m[p] * F.m[q] - F.m[3 * i + L] * F.m[3 * k + J]);
         if (J == L) A -= crossed * b.m[3 * i + k];
       }
+      TUNICA_UNROLL
       for (std::size_t n = 0; n < At::count; ++n)
         if (curves(n)) A += D[n].m[p] * H[n].m[q];
       r.A[9 * p + q] = A;
       r.A[9 * q + p] = A;
     }
+  }
   return r;
 }
 

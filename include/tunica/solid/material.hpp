@@ -5,6 +5,7 @@
 #include "tunica/core/dual.hpp"
 #include "tunica/core/jet.hpp"
 #include "tunica/core/tensor.hpp"
+#include "tunica/core/unroll.hpp"
 
 #include <array>
 #include <concepts>
@@ -194,20 +195,23 @@ template <Material Law, class S>
 template <class S>
 void add_volumetric(const S& slope, const S& curvature, const Tensor<S>& F, const Tensor<S>& cof,
                     Response<S>& r) {
+  TUNICA_UNROLL
   for (std::size_t p = 0; p < 9; ++p) {
     r.P.m[p] += slope * cof.m[p];
     const S bulk = curvature * cof.m[p];
+    TUNICA_UNROLL
     for (std::size_t q = 0; q < 9; ++q) r.A[9 * p + q] += bulk * cof.m[q];
   }
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t J = 0; J < 3; ++J) {
-      const S pF = slope * F.m[3 * i + J];  // the blocks of rows i+1, i+2 and columns J+1, J+2
-      const std::size_t i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), J1 = (J + 1) % 3, J2 = (J + 2) % 3;
-      r.A[9 * (i1 + J1) + i2 + J2] += pF;
-      r.A[9 * (i2 + J2) + i1 + J1] += pF;
-      r.A[9 * (i1 + J2) + i2 + J1] -= pF;
-      r.A[9 * (i2 + J1) + i1 + J2] -= pF;
-    }
+  TUNICA_UNROLL
+  for (std::size_t p = 0; p < 9; ++p) {
+    const std::size_t i = p / 3, J = p % 3;  // the blocks of rows i+1, i+2 and columns J+1, J+2
+    const std::size_t i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), J1 = (J + 1) % 3, J2 = (J + 2) % 3;
+    const S pF = slope * F.m[p];
+    r.A[9 * (i1 + J1) + i2 + J2] += pF;
+    r.A[9 * (i2 + J2) + i1 + J1] += pF;
+    r.A[9 * (i1 + J2) + i2 + J1] -= pF;
+    r.A[9 * (i2 + J1) + i1 + J2] -= pF;
+  }
 }
 
 /// Whether the response of a law depends on what was before: then its points change from step to step.

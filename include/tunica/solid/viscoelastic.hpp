@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/core/expect.hpp"
+#include "tunica/core/unroll.hpp"
 #include "tunica/solid/isochoric_part.hpp"
 
 #include <array>
@@ -86,13 +87,16 @@ class Viscoelastic {
       r.P.m[p] = S(gain_) * r.P.m[p] + c.B.m[p] - third * c.g.m[p];
       Y.m[p] = S(1. / 3) * third * c.g.m[p] - S(2. / 3) * c.B.m[p];
     }
-    for (std::size_t p = 0; p < 9; ++p)
+    TUNICA_UNROLL
+    for (std::size_t p = 0; p < 9; ++p) {
+      TUNICA_UNROLL
       for (std::size_t q = 0; q < 9; ++q) {
         const std::size_t i = p / 3, J = p % 3, k = q / 3, L = q % 3;
         S A = c.g.m[p] * Y.m[q] + Y.m[p] * c.g.m[q] + third * c.g.m[3 * i + L] * c.g.m[3 * k + J];
         if (i == k) A += c.sH.m[3 * J + L];
         r.A[9 * p + q] = S(gain_) * r.A[9 * p + q] + A;
       }
+    }
     return r;
   }
 
