@@ -34,10 +34,12 @@ class Assembly {
         graph_(node_graph<C::nodes>(mesh.cells, mesh.node_count())),
         chunks_(mesh.cells, mesh.node_count()) {
     position_.resize(static_cast<std::size_t>(cells_.cols()) * C::nodes * C::nodes);
-    std::size_t k = 0;
-    for (Eigen::Index e = 0; e < cells_.cols(); ++e)
-      for (int b = 0; b < C::nodes; ++b)
-        for (int a = 0; a < C::nodes; ++a) position_[k++] = find(cells_(a, e), cells_(b, e));
+    parallel_chunks(cells_.cols(), 1024, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      std::size_t k = static_cast<std::size_t>(begin) * C::nodes * C::nodes;
+      for (std::ptrdiff_t e = begin; e < end; ++e)
+        for (int b = 0; b < C::nodes; ++b)
+          for (int a = 0; a < C::nodes; ++a) position_[k++] = find(cells_(a, e), cells_(b, e));
+    });
   }
 
   [[nodiscard]] const NodeGraph& graph() const { return graph_; }

@@ -19,7 +19,8 @@
 
 namespace tunica::fem {
 
-/// The cells of W lanes; lanes from `count` on repeat the last cell, and what they compute is dropped.
+/// The cells of W lanes, consecutive ones; lanes from `count` on repeat the last cell, and what they compute
+/// is dropped.
 template <int W>
 struct CellPack {
   Index cell[W];
@@ -51,8 +52,11 @@ class BlockAssembly {
         chunks_(mesh.cells, mesh.node_count(), lanes),
         storage_(storage),
         stride_(storage == la::BlockStorage::full ? nodes * nodes : pairs) {
-    if (storage == la::BlockStorage::upper) keep_upper();
+    if (storage == la::BlockStorage::upper) keep_upper(graph_);
     place_.resize(static_cast<std::size_t>(cells_.cols()) * stride_);
+    at_end_.assign(static_cast<std::size_t>(cells_.cols() / lanes) + 1, 0);
+    for (Eigen::Index k = 0; k < cells_.size(); ++k)
+      if (cells_.data()[k] == node_count() - 1) at_end_[static_cast<std::size_t>(k / nodes / lanes)] = 1;
     parallel_chunks(cells_.cols(), 1024, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       for (std::ptrdiff_t e = begin; e < end; ++e) find_places(static_cast<Index>(e));
     });
@@ -97,21 +101,14 @@ class BlockAssembly {
   TUNICA_INLINE void gather(const CellPack<Lanes<S>::count>& pack, const Values& values,
                             S (&x)[nodes][Dim]) const {
     if constexpr (Dim == 3 && has_wide_registers<S>) {
-      const Index last = node_count() - 1;
-      for (int a = 0; a < nodes; ++a)
-        triples_to_lanes(
-            values.data(), last, [&](int l) { return corners(pack.cell[l])[a]; }, x[a]);
-    } else {
-      using T = typename Lanes<S>::type;
-      alignas(64) T row[Lanes<S>::count][nodes * Dim];
-      for (int l = 0; l < Lanes<S>::count; ++l) {
-        const Index* const node = corners(pack.cell[l]);
+      if (!at_end(pack.cell[0]) && !at_end(pack.cell[Lanes<S>::count - 1])) {
         for (int a = 0; a < nodes; ++a)
-          for (int i = 0; i < Dim; ++i)
-            row[l][Dim * a + i] = static_cast<T>(values.data()[std::ptrdiff_t{Dim} * node[a] + i]);
+          triples_to_lanes(
+              values.data(), [&](int l) { return corners(pack.cell[l])[a]; }, x[a]);
+        return;
       }
-      rows_to_lanes<nodes * Dim>(&row[0][0], nodes * Dim, &x[0][0]);
     }
+    gather_by_rows(pack, values.data(), x);
   }
 
   /// A += symmetric element matrices, of which blocks (a, b) with a <= b are given by rows, at K[pair(a, b)].
@@ -185,6 +182,22 @@ class BlockAssembly {
     TUNICA_INLINE const T* of(int lane) const { return number + lane * (block == 1 ? 1 : Blocks * block); }
   };
 
+  template <class S, int Dim, class T>
+  void gather_by_rows(const CellPack<Lanes<S>::count>& pack, const T* values, S (&x)[nodes][Dim]) const {
+    using To = typename Lanes<S>::type;
+    alignas(64) To row[Lanes<S>::count][nodes * Dim];
+    for (int l = 0; l < Lanes<S>::count; ++l) {
+      const Index* const node = corners(pack.cell[l]);
+      for (int a = 0; a < nodes; ++a)
+        for (int i = 0; i < Dim; ++i)
+          row[l][Dim * a + i] = static_cast<To>(values[std::ptrdiff_t{Dim} * node[a] + i]);
+    }
+    rows_to_lanes<nodes * Dim>(&row[0][0], nodes * Dim, &x[0][0]);
+  }
+
+  /// True if the cell, or one beside it, has the last node, behind which nothing may be read.
+  [[nodiscard]] bool at_end(Index cell) const { return at_end_[static_cast<std::size_t>(cell / lanes)] != 0; }
+
   template <int W, class Body, class Next>
   void for_each_pack_then(Body& body, Next&& fetch) const {
     static_assert(lanes % W == 0, "a pack has at most 16 lanes");
@@ -215,18 +228,21 @@ class BlockAssembly {
       for (std::size_t p = 0; p < stride_; ++p) {
         const T* const at = values + block * std::ptrdiff_t{place[p] < 0 ? ~place[p] : place[p]};
         for (int k = 0; k < block; k += line) __builtin_prefetch(at + k, 1);
-        if constexpr (block % line != 0 && block > 1) __builtin_prefetch(at + block - 1, 1);
+        if constexpr ((block - 1) % line != 0) __builtin_prefetch(at + block - 1, 1);
       }
     }
   }
 
   template <class T>
   TUNICA_INLINE static void add_block(const T* from, T* to) {
+#pragma GCC unroll 16
     for (int k = 0; k < block; ++k) to[k] += from[k];
   }
   template <class T>
   TUNICA_INLINE static void add_turned(const T* from, T* to) {
+#pragma GCC unroll 4
     for (int r = 0; r < N; ++r)
+#pragma GCC unroll 4
       for (int c = 0; c < N; ++c) to[r * N + c] += from[c * N + r];
   }
 
@@ -249,21 +265,6 @@ class BlockAssembly {
     return place_.data() + stride_ * static_cast<std::size_t>(cell);
   }
 
-  /// Of the pattern, what lies on and above the diagonal.
-  void keep_upper() {
-    std::size_t kept = 0;
-    Index begin = 0;
-    for (Index i = 0; i < node_count(); ++i) {
-      const Index end = graph_.start[static_cast<std::size_t>(i) + 1];
-      for (Index k = begin; k < end; ++k)
-        if (const Index j = graph_.neighbour[static_cast<std::size_t>(k)]; j >= i)
-          graph_.neighbour[kept++] = j;
-      begin = end;
-      graph_.start[static_cast<std::size_t>(i) + 1] = static_cast<Index>(kept);
-    }
-    graph_.neighbour.resize(kept);
-  }
-
   void find_places(Index cell) {
     const Index* const node = corners(cell);
     Index* place = place_.data() + stride_ * static_cast<std::size_t>(cell);
@@ -284,6 +285,7 @@ class BlockAssembly {
   CellChunks chunks_;
   la::BlockStorage storage_;
   std::size_t stride_;        // places of a cell: nodes a + b of the block (a, b), or pair(a, b) with `upper`
+  std::vector<char> at_end_;  // of 16 cells each: one of them has the last node
   std::vector<Index> place_;  // in the blocks of the matrix; ~place where it lies turned
 };
 

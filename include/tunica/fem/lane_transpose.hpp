@@ -95,19 +95,14 @@ inline constexpr bool has_wide_registers = false;
 template <int N, int W>
 inline constexpr bool has_wide_registers<Pack<double, N, W>> = W >= 4;
 
-/// Lane l of to[c] = values[3 node(l) + c], c < 3. Four numbers are read at once, so only three at `last`,
-/// the last node there is.
+/// Lane l of to[c] = values[3 node(l) + c], c < 3. Four numbers are read at once: one beyond those of a node.
 template <class S, class Node>
-TUNICA_INLINE void triples_to_lanes(const double* values, Index last, Node&& node, S (&to)[3]) {
+TUNICA_INLINE void triples_to_lanes(const double* values, Node&& node, S (&to)[3]) {
   using Four = typename registers::Register<double, 4>::type;
   constexpr int W = S::size / S::parts;
   const auto load = [&](Index n) {
-    const double* const from = values + std::ptrdiff_t{3} * n;
     Four x;
-    if (n != last) [[likely]]
-      __builtin_memcpy(&x, from, sizeof x);
-    else
-      x = Four{from[0], from[1], from[2], 0};
+    __builtin_memcpy(&x, values + std::ptrdiff_t{3} * n, sizeof x);
     return x;
   };
   for (int p = 0; p < S::parts; ++p) {

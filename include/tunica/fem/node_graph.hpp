@@ -63,4 +63,19 @@ template <int Nodes>
   return graph;
 }
 
+/// Keeps of each node the neighbours from itself on: the upper triangle of a symmetric pattern.
+inline void keep_upper(NodeGraph& graph) {
+  std::size_t kept = 0;
+  Index begin = 0;
+  for (std::size_t i = 0; i + 1 < graph.start.size(); ++i) {
+    const Index end = graph.start[i + 1];
+    for (Index k = begin; k < end; ++k)
+      if (const Index j = graph.neighbour[static_cast<std::size_t>(k)]; j >= static_cast<Index>(i))
+        graph.neighbour[kept++] = j;
+    begin = end;
+    graph.start[i + 1] = static_cast<Index>(kept);
+  }
+  graph.neighbour.resize(kept);
+}
+
 }  // namespace tunica::fem

@@ -93,7 +93,9 @@ class BlockMatrix {
         T sum[N] = {};
         for (Index k = at(start_, i), last = at(start_, i + 1); k < last; ++k, a += block_size) {
           const T* xk = x + std::ptrdiff_t{N} * at(column_, k);
+#pragma GCC unroll 4
           for (int r = 0; r < N; ++r)
+#pragma GCC unroll 4
             for (int c = 0; c < N; ++c) sum[r] += a[r * N + c] * xk[c];
         }
         for (int r = 0; r < N; ++r) y[N * i + r] = sum[r];
@@ -116,11 +118,15 @@ class BlockMatrix {
         for (Index k = at(start_, i), last = at(start_, i + 1); k < last; ++k, a += block_size) {
           const std::ptrdiff_t j = at(column_, k);
           const T* xj = x + N * j;
+#pragma GCC unroll 4
           for (int r = 0; r < N; ++r)
+#pragma GCC unroll 4
             for (int c = 0; c < N; ++c) sum[r] += a[r * N + c] * xj[c];
           if (j == i) continue;
           T* to = j < end ? y + N * j : spill + N * (j - end);
+#pragma GCC unroll 4
           for (int c = 0; c < N; ++c)
+#pragma GCC unroll 4
             for (int r = 0; r < N; ++r) to[c] += a[r * N + c] * xi[r];
         }
         for (int r = 0; r < N; ++r) y[N * i + r] += sum[r];
