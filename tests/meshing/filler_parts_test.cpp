@@ -147,7 +147,7 @@ TEST_SUITE("unit") {
     const auto points = random_points(500, 3);
     Box box;
     for (const Vec3& x : points) box.extend(x);
-    auto order = insertion_order(points, box);
+    auto order = insertion_order(points, points.size(), box);
     std::sort(order.begin(), order.end());
     for (std::size_t n = 0; n < order.size(); ++n) CHECK(order[n] == static_cast<Index>(n));
   }

@@ -69,6 +69,10 @@ inline void set_column(Points<3>& points, Index n, const Vec3& x) {
   return {(1 - t) * a[0] + t * b[0], (1 - t) * a[1] + t * b[1], (1 - t) * a[2] + t * b[2]};
 }
 
+[[nodiscard]] inline bool equal(const Vec3& a, const Vec3& b) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 [[nodiscard]] inline double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

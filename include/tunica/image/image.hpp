@@ -51,7 +51,7 @@ struct Image {
   /// Gradient of the trilinear interpolant of the cell that holds x, per unit of length.
   [[nodiscard]] Vec3 gradient(const Vec3& x) const {
     const Local l = locate(x);
-    Vec3 g = Vec3::Zero();
+    Vec3 g{0, 0, 0};
     for (int c = 0; c < 8; ++c)
       for (int a = 0; a < 3; ++a) g[a] += l.derivative(c, a) * sample(l, c);
     return g;

@@ -7,6 +7,7 @@
 #include "tunica/mesh/triangle.hpp"
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 
 namespace tunica::mesh {
@@ -80,7 +81,8 @@ template <int Dim>
 }
 
 /// Volume of the trilinear hexahedra: exact with 2x2x2 Gauss points, det J is at most quadratic an axis.
-[[nodiscard]] inline double volume(const HexMesh& m) {
+template <std::same_as<Hex8> C>
+[[nodiscard]] double volume(const Mesh<C>& m) {
   constexpr double g = 0.57735026918962576;  // 1/sqrt(3)
   constexpr std::array<std::array<int, 3>, 8> corner{
       {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};

@@ -281,7 +281,7 @@ template <SizeField Size>
 [[nodiscard]] LayeredFill layered_tetrahedra(const mesh::Surface& surface, const Size& size,
                                              const LayerOptions& options, const FillOptions& core = {}) {
   return detail::layered(surface, options,
-                         [&](const mesh::Surface& inner) { return tetrahedra(inner, size, core); });
+                         [&](const mesh::Surface& inner) { return tetrahedra(inner, core, size); });
 }
 
 }  // namespace tunica::meshing

@@ -56,7 +56,7 @@ struct CellLoops {
 
 /// On an ambiguous face the inside corners are kept apart; where its bit of `joined` is set they are
 /// joined. Loops are numbered by their lowest edges.
-[[nodiscard]] constexpr CellLoops cell_loops(unsigned signs, unsigned joined) {
+[[nodiscard]] inline CellLoops cell_loops(unsigned signs, unsigned joined) {
   std::array<int, 12> root{};
   for (int e = 0; e < 12; ++e) root[static_cast<std::size_t>(e)] = e;
   const auto find = [&](int e) {
@@ -102,7 +102,7 @@ struct CellLoops {
 }
 
 /// Both strands of the contour on an ambiguous face belong to one loop.
-[[nodiscard]] constexpr bool strands_meet(const CellLoops& loops, std::size_t face) {
+[[nodiscard]] inline bool strands_meet(const CellLoops& loops, std::size_t face) {
   const auto& e = cell_tables.face_edges[face];
   for (const int edge : e)
     if (loops.loop[static_cast<std::size_t>(edge)] != loops.loop[static_cast<std::size_t>(e[0])])

@@ -38,7 +38,7 @@ class Delaunay {
     };
     const Index a = corner(-1, -1, -1), b = corner(3, -1, -1), c = corner(-1, 3, -1), d = corner(-1, -1, 3);
     last_ = c_.add({a, b, c, d});
-    const auto order = insertion_order(std::span(c_.points).first(static_cast<std::size_t>(count)), box);
+    const auto order = insertion_order(c_.points, static_cast<std::size_t>(count), box);
     for (const Index p : order) insert_at(p);
   }
 
@@ -65,7 +65,7 @@ class Delaunay {
     const Vec3 x = c_.point(p);
     const Index first = locate(x);
     for (const Index n : c_.nodes(first))
-      if (c_.point(n) == x)
+      if (vec::equal(c_.point(n), x))
         throw MeshError("two nodes of the surface coincide: nodes " + std::to_string(n) + " and " +
                         std::to_string(p));
     cavity_.assign(1, first);

@@ -19,7 +19,7 @@ struct CellParts {
 
 /// Inside corners are joined by edges of the cell, and across ambiguous faces whose strands cut off the
 /// outside corners. Where all strands of such a face are one loop they cut off the inside ones (cell_loops).
-[[nodiscard]] constexpr CellParts cell_parts(unsigned signs, const CellLoops& loops) {
+[[nodiscard]] inline CellParts cell_parts(unsigned signs, const CellLoops& loops) {
   std::array<std::int8_t, 8> root{0, 1, 2, 3, 4, 5, 6, 7};
   const auto join = [&](int p, int q) {
     const std::int8_t r = root[static_cast<std::size_t>(p)], s = root[static_cast<std::size_t>(q)];

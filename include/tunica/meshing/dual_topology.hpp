@@ -68,8 +68,7 @@ class DualTopology {
   [[nodiscard]] Range cells(std::size_t k) const { return {cell_[ny_ * k], cell_[ny_ * (k + 1)]}; }
   [[nodiscard]] std::size_t i(std::size_t cell) const { return at_[cell]; }
   [[nodiscard]] const CellLoops& loops(std::size_t cell) const {
-    return other_.empty() || other_[cell] == 0 ? dual_cases()[signs_[cell]].loops
-                                               : split_[other_[cell] - 1].loops;
+    return other_.empty() || other_[cell] == 0 ? cases_[signs_[cell]].loops : split_[other_[cell] - 1].loops;
   }
   [[nodiscard]] Index first_vertex(std::size_t cell) const { return vertex_[cell]; }
   /// Number of the first quadrilateral across an edge from row j of slice k of the nodes.
@@ -177,14 +176,13 @@ class DualTopology {
   /// are one loop in both of its cells. There the strands are paired the other way: that splits an oriented
   /// loop in two, in both cells, and so never makes another such face.
   void separate() {
-    const auto& cases = dual_cases();
     constexpr unsigned high_faces = 0b101010;
     for (std::size_t r = 0; r < ny_ * nz_; ++r)
       for (std::size_t c = cell_[r]; c < cell_[r + 1]; ++c)
-        if ((cases[signs_[c]].meeting & high_faces) != 0)
+        if ((cases_[signs_[c]].meeting & high_faces) != 0)
           for (std::size_t a = 0; a < 3; ++a) {
             const std::size_t high = 2 * a + 1, low = 2 * a;
-            if ((cases[signs_[c]].meeting >> high & 1U) == 0 || !strands_meet(loops(c), high)) continue;
+            if ((cases_[signs_[c]].meeting >> high & 1U) == 0 || !strands_meet(loops(c), high)) continue;
             const std::size_t d = a == 0 ? c + 1 : find(at_[c], r + (a == 1 ? 1 : ny_));
             if (!strands_meet(loops(d), low)) continue;
             split(c, high), split(d, low);
@@ -212,6 +210,7 @@ class DualTopology {
   };
 
   const PaddedBits& bits_;
+  const std::array<DualCase, 256>& cases_ = dual_cases();
   std::size_t nx_, ny_, nz_;
   std::vector<std::size_t> cell_;     // first cell of each row of nodes
   std::vector<Index> quad_;           // and its first quadrilateral

@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <span>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -66,14 +66,16 @@ class EditableInterfaces : public InterfaceRings {
     for (const Index t : ring_[at(b)])
       if (!has(nodes(t), a)) gone.push_back(t);
     std::vector<Made> made;
-    std::vector<Nodes> keys;
+    std::vector<std::uint64_t> keys;  // the two nodes beside a, which all new triangles have in common
     for (const Index t : gone) {
       if (has(nodes(t), a) && has(nodes(t), b)) continue;
       Made m{nodes(t), s_.sides[at(t)]};
       for (Index& v : m.nodes) v = v == b ? a : v;
       made.push_back(m);
-      keys.push_back(m.nodes);
-      std::sort(keys.back().begin(), keys.back().end());
+      const std::size_t k = m.nodes[0] == a ? 0 : m.nodes[1] == a ? 1 : 2;
+      const Index p = m.nodes[(k + 1) % 3], q = m.nodes[(k + 2) % 3];
+      keys.push_back(static_cast<std::uint64_t>(std::min(p, q)) << 32U |
+                     static_cast<std::uint64_t>(std::max(p, q)));
     }
     std::sort(keys.begin(), keys.end());
     if (std::adjacent_find(keys.begin(), keys.end()) != keys.end()) return false;
@@ -160,12 +162,12 @@ class EditableInterfaces : public InterfaceRings {
   /// limit.
   [[nodiscard]] bool wears(const Gains& gains) const {
     return std::any_of(gains.begin(), gains.end(), [&](const auto& g) {
-      return volume_[at(g.first)] > 0 && std::abs(g.second) > most_worn * volume_[at(g.first)];
+      return volume_[at(g.region)] > 0 && std::abs(g.volume) > most_worn * volume_[at(g.region)];
     });
   }
 
-  [[nodiscard]] bool allowed(std::span<const Made> made, std::span<const Index> gone, const Before& before,
-                             double least_cosine, double least_angle) {
+  [[nodiscard]] bool allowed(const std::vector<Made>& made, const std::vector<Index>& gone,
+                             const Before& before, double least_cosine, double least_angle) {
     for (const Made& m : made) {
       const mesh::Triangle f = triangle(m.nodes);
       const auto n = std::find_if(before.normals.begin(), before.normals.end(),
@@ -183,7 +185,7 @@ class EditableInterfaces : public InterfaceRings {
     Box about;
     for (const Made& m : made) about.extend(triangle(m.nodes).box());
     (void)grid_.any(about, [&](Index t) {
-      if (!in(gone, t)) near_.emplace_back(t, triangle(nodes(t)).box());
+      if (!in(gone, t)) near_.push_back({t, triangle(nodes(t)).box()});
       return false;
     });
     for (const Made& m : made) {
@@ -198,7 +200,11 @@ class EditableInterfaces : public InterfaceRings {
     return true;
   }
 
-  std::vector<std::pair<Index, Box>> near_;
+  struct Near {
+    Index triangle;
+    Box box;
+  };
+  std::vector<Near> near_;
 };
 
 }  // namespace tunica::meshing

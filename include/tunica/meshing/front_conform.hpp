@@ -24,10 +24,11 @@ class FrontConform {
   Index run() {
     for (int pass = 0; pass < most_passes; ++pass)
       if (!sweep()) {
-        for (const auto& [e, inner] : s_.chain) {
-          Index u = s_.edges[at(e)].a;
-          for (const Index n : inner) s_.lock_piece(u, n), u = n;
-          s_.lock_piece(u, s_.edges[at(e)].b);
+        for (std::size_t e = 0; e < s_.edges.size(); ++e) {
+          if (!s_.chained(static_cast<Index>(e))) continue;
+          Index u = s_.edges[e].a;
+          for (const Index n : s_.chain(static_cast<Index>(e))) s_.lock_piece(u, n), u = n;
+          s_.lock_piece(u, s_.edges[e].b);
         }
         return steiner_;
       }
@@ -59,7 +60,7 @@ class FrontConform {
   }
 
   bool halve_missing(Index e) {
-    std::vector<Index>& inner = s_.chain[e];
+    std::vector<Index>& inner = s_.chain(e);
     const auto node = [&](std::size_t i) {
       return i == 0 ? s_.edges[at(e)].a : i == inner.size() + 1 ? s_.edges[at(e)].b : inner[i - 1];
     };

@@ -36,7 +36,7 @@ class FrontEdges {
   bool recover(Index edge, Means means) {
     deep_left_ = means == Means::flips ? most_deep : 0;
     const auto [a, b, triangles] = s_.edges[at(edge)];
-    if (s_.chain.count(edge) > 0) return true;
+    if (s_.chained(edge)) return true;
     for (int turn = 0; turn < 2; ++turn)
       if (turn == 0 ? flip_along(a, b) : flip_along(b, a)) return true;
     if (means == Means::flips) return false;
@@ -48,7 +48,7 @@ class FrontEdges {
       if (flip_along(u, goal)) {
         if (u != a || goal != b) s_.lock_piece(u, goal);
         if (goal == b) return true;
-        s_.chain[edge].push_back(goal);
+        s_.chain(edge).push_back(goal);
         goals.pop_back();
         u = goal;
         continue;
@@ -61,7 +61,7 @@ class FrontEdges {
       if (p < 0) p = split(u, goal, hit);
       if (p < 0) throw RecoveryFailure{c_.point(u), "an edge cannot be split off"};
       if (!inserted) {
-        s_.chain[edge].push_back(p);
+        s_.chain(edge).push_back(p);
         s_.lock_piece(u, p);
         u = p;
       } else {
@@ -75,9 +75,10 @@ class FrontEdges {
 
   /// Steiner points that the tetrahedra have made superfluous: where an edge skips one, it is let go.
   void shorten_chains() {
-    for (auto it = s_.chain.begin(); it != s_.chain.end();) {
-      auto& inner = it->second;
-      const auto& edge = s_.edges[at(it->first)];
+    for (std::size_t e = 0; e < s_.edges.size(); ++e) {
+      if (!s_.chained(static_cast<Index>(e))) continue;
+      auto& inner = s_.chain(static_cast<Index>(e));
+      const auto& edge = s_.edges[e];
       const auto node = [&](std::size_t i) {
         return i == 0 ? edge.a : i == inner.size() + 1 ? edge.b : inner[i - 1];
       };
@@ -91,7 +92,6 @@ class FrontEdges {
                       inner.begin() + static_cast<std::ptrdiff_t>(i + span - 1));
           span = std::min(span, inner.size() + 1);
         }
-      it = inner.empty() ? s_.chain.erase(it) : std::next(it);
     }
   }
 

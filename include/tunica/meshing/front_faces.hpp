@@ -14,8 +14,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -46,7 +46,9 @@ class FrontFaces {
  private:
   static constexpr int most_steps = 20000;
   static constexpr double flat = 1e-6;  // sine of a dihedral angle that rounding may turn over
-  using Directed = std::pair<Index, Index>;
+  // Directed edges (p, q) as p << 32 | q, ascending.
+  using Front = std::vector<std::uint64_t>;
+  static constexpr std::uint64_t low = 0xFFFFFFFFU;
 
   struct Piercing {
     Index tet = -1, u = -1, v = -1;  // u above the triangle, v below
@@ -55,6 +57,23 @@ class FrontFaces {
   template <class I>
   [[nodiscard]] static std::size_t at(I i) {
     return static_cast<std::size_t>(i);
+  }
+
+  [[nodiscard]] static std::uint64_t directed(Index p, Index q) {
+    return static_cast<std::uint64_t>(p) << 32U | static_cast<std::uint64_t>(q);
+  }
+  static void put(Front& front, Index p, Index q) {
+    const std::uint64_t e = directed(p, q);
+    const auto place = std::lower_bound(front.begin(), front.end(), e);
+    if (place == front.end() || *place != e) front.insert(place, e);
+  }
+  /// False: it is not there.
+  [[nodiscard]] static bool take(Front& front, Index p, Index q) {
+    const std::uint64_t e = directed(p, q);
+    const auto place = std::lower_bound(front.begin(), front.end(), e);
+    if (place == front.end() || *place != e) return false;
+    front.erase(place);
+    return true;
   }
 
   [[nodiscard]] int side(Index node, Index f) const {
@@ -79,7 +98,7 @@ class FrontFaces {
   bool remove_piercing_edge(Index f) {
     find_piercing(f);
     const auto allowed = [&](Index x, Index y) {
-      if (const Index e = s_.edge_between(x, y); e >= 0 && s_.chain.count(e) > 0) return false;
+      if (const Index e = s_.edge_between(x, y); e >= 0 && s_.chained(e)) return false;
       const int sx = side(x, f), sy = side(y, f);
       return sx * sy >= 0 || !(sx > 0 ? pierces(x, y, f) : pierces(y, x, f));
     };
@@ -135,28 +154,26 @@ class FrontFaces {
   /// the triangle there. Only signs and neighbours decide, so rounded Steiner points do no harm.
   void advance(Index f) {
     const Triple& t = s_.triangles[at(f)];
-    std::set<Directed> front;
+    Front front;
     for (std::size_t i = 0; i < 3; ++i) {
       const Index e = s_.triangle_edges[at(f)][i];
       std::vector<Index> path{t[i]};
-      if (const auto it = s_.chain.find(e); it != s_.chain.end()) {
-        if (s_.edges[at(e)].a == t[i])
-          path.insert(path.end(), it->second.begin(), it->second.end());
-        else
-          path.insert(path.end(), it->second.rbegin(), it->second.rend());
+      if (s_.chained(e)) {
+        path.insert(path.end(), s_.chain(e).begin(), s_.chain(e).end());
+        if (s_.edges[at(e)].a != t[i]) std::reverse(path.begin() + 1, path.end());
       }
       path.push_back(t[(i + 1) % 3]);
-      for (std::size_t k = 0; k + 1 < path.size(); ++k) front.emplace(path[k], path[k + 1]);
+      for (std::size_t k = 0; k + 1 < path.size(); ++k) put(front, path[k], path[k + 1]);
     }
     for (int step = 0; !front.empty(); ++step) {
-      const auto [p, q] = *front.begin();
+      const auto p = static_cast<Index>(front[0] >> 32U), q = static_cast<Index>(front[0] & low);
       if (step > most_steps) throw RecoveryFailure{c_.point(p), "a face needs too many pieces"};
       const Index w = next_node(f, p, q);
       if (!mark({p, q, w}, f)) throw RecoveryFailure{c_.point(p), "a piece of a face is lost"};
       s_.lock_piece(q, w), s_.lock_piece(w, p);  // no later split or cavity may take them
-      front.erase({p, q});
-      for (const auto& [from, to] : {Directed{q, w}, Directed{w, p}})
-        if (front.erase({from, to}) == 0) front.emplace(to, from);
+      (void)take(front, p, q);
+      if (!take(front, q, w)) put(front, w, q);
+      if (!take(front, w, p)) put(front, p, w);
     }
   }
 

@@ -19,7 +19,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -37,8 +36,8 @@ class FrontRecovery {
 
   /// Fills the complex with the inside of the surface. MeshError names what is wrong with the
   /// surface; RecoveryFailure asks for other inner points.
-  static RecoveryCounts run(TetComplex& complex, const FrontSurface& surface, std::span<const Vec3> nodes,
-                            std::span<const Vec3> inner, Way way = Way::forward) {
+  static RecoveryCounts run(TetComplex& complex, const FrontSurface& surface, const std::vector<Vec3>& nodes,
+                            const std::vector<Vec3>& inner, Way way = Way::forward) {
     FrontRecovery work(complex, surface);
     work.way_ = way;
     complex.points.assign(nodes.begin(), nodes.end());
@@ -74,7 +73,7 @@ class FrontRecovery {
       counts_.steiner = FrontConform(c_, s_, delaunay).run();
       edges.clear(), faces.clear();
       find_missing(edges, faces);
-      std::erase_if(edges, [&](Index e) { return s_.chain.count(e) > 0; });
+      std::erase_if(edges, [&](Index e) { return s_.chained(e); });
     }
     if (way_ == Way::backward)
       std::reverse(edges.begin(), edges.end()), std::reverse(faces.begin(), faces.end());

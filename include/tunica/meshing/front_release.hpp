@@ -13,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -69,6 +68,11 @@ class FrontRelease {
   struct Loop {
     Index face;
     std::vector<Index> nodes;
+  };
+
+  /// On a triangle of the surface from a neighbour of the point to the next one around it.
+  struct Step {
+    Index face, from, to;
   };
 
   /// Points that are no nodes of the surface but on it, those on its edges last.
@@ -178,38 +182,54 @@ class FrontRelease {
   /// edge, which the edge closes.
   void find_loops(Index node, const Vec3& place) {
     c_.star(node, star_);
-    std::map<Index, std::map<Index, Index>> next;  // per triangle: from node to node around
+    steps_.clear();
     for (const Index t : star_)
       for (int f = 0; f < 4; ++f) {
         if (c_.across(t, f) >= 0 || c_.nodes(t)[at(f)] == node) continue;
         const Triple n = c_.face(t, f);
         std::size_t i = 0;
         while (n[i] != node) ++i;
-        next[c_.mark(t, f) / 2][n[(i + 1) % 3]] = n[(i + 2) % 3];
+        enter({c_.mark(t, f) / 2, n[(i + 1) % 3], n[(i + 2) % 3]});
       }
     loops_.clear();
-    for (auto& [face, steps] : next) {
-      Index start = steps.begin()->first;
-      for (const auto& [from, to] : steps) {  // the start of a path is nobody's end
-        const bool is_end = std::any_of(steps.begin(), steps.end(),
-                                        [from = from](const auto& s) { return s.second == from; });
-        if (!is_end) start = from;
-      }
-      Loop loop{face, {start}};
+    for (std::size_t first = 0, last = 0; first < steps_.size(); first = last) {
+      while (last < steps_.size() && steps_[last].face == steps_[first].face) ++last;
+      const auto step_with = [&](Index Step::*end, Index node_there) {
+        for (std::size_t s = first; s < last; ++s)
+          if (steps_[s].*end == node_there) return s;
+        return last;
+      };
+      Index start = steps_[first].from;
+      for (std::size_t s = first; s < last; ++s)  // the start of a path is nobody's end
+        if (step_with(&Step::to, steps_[s].from) == last) start = steps_[s].from;
+      Loop loop{steps_[first].face, {start}};
       Index n = start;
       std::size_t used = 0;
-      for (; used < steps.size(); ++used) {
-        const auto it = steps.find(n);
-        if (it == steps.end()) break;
-        n = it->second;
+      for (; used < last - first; ++used) {
+        const std::size_t s = step_with(&Step::from, n);
+        if (s == last) break;
+        n = steps_[s].to;
         if (n != start) loop.nodes.push_back(n);
       }
       // Two nodes: on this triangle the point stands in a sliver beside its edge, which just closes.
-      const bool whole = loop.nodes.size() > (next.size() == 1 ? 2 : 1);
-      if (used != steps.size() || !whole || loop.nodes.size() > most_corners)
+      const bool whole = loop.nodes.size() > (last - first == steps_.size() ? 2 : 1);
+      if (used != last - first || !whole || loop.nodes.size() > most_corners)
         throw RecoveryFailure{place, "the surface around a point is not a disc"};
       loops_.push_back(std::move(loop));
     }
+  }
+
+  /// Steps lie by triangle and by the node that they leave, which has one on each.
+  void enter(const Step& step) {
+    std::size_t i = steps_.size();
+    const auto after = [&](const Step& s) {
+      return s.face != step.face ? s.face > step.face : s.from > step.from;
+    };
+    while (i > 0 && after(steps_[i - 1])) --i;
+    if (i > 0 && steps_[i - 1].face == step.face && steps_[i - 1].from == step.from)
+      steps_[i - 1] = step;
+    else
+      steps_.insert(steps_.begin() + static_cast<std::ptrdiff_t>(i), step);
   }
 
   /// Tries the new place: the star and the fans over the loops must have positive volumes.
@@ -264,6 +284,7 @@ class FrontRelease {
   Level level_ = levels[0];
   std::vector<Index> star_;
   std::vector<Loop> loops_;
+  std::vector<Step> steps_;
   std::vector<Quad> fresh_;
   std::vector<NewFace> faces_;
   std::vector<Side> open_;

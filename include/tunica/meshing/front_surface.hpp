@@ -7,14 +7,13 @@
 #include "tunica/core/text.hpp"
 #include "tunica/core/types.hpp"
 #include "tunica/core/vec.hpp"
+#include "tunica/mesh/sorted_halves.hpp"
 #include "tunica/meshing/tet_complex.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,7 +34,6 @@ class FrontSurface {
   std::vector<Edge> edges;                           // sorted by (a, b)
   std::vector<std::array<Index, 3>> triangle_edges;  // edge i runs from corner i to corner i + 1
   Index nodes = 0;
-  std::map<Index, std::vector<Index>> chain;  // Steiner points of an edge, in order from a to b
 
   /// MeshError when a triangle is degenerate, an edge has not exactly two triangles of opposite
   /// sense, a node has two fans or none.
@@ -78,21 +76,35 @@ class FrontSurface {
   }
 
   /// Must the complex keep the edge (a, b)?
-  [[nodiscard]] bool locked(Index a, Index b) const {
-    return edge_between(a, b) >= 0 || pieces_.count({std::min(a, b), std::max(a, b)}) > 0;
+  [[nodiscard]] bool locked(Index a, Index b) const { return edge_between(a, b) >= 0 || piece(a, b); }
+  void lock_piece(Index a, Index b) {
+    if (piece(a, b)) return;
+    if (pieces_.size() <= at(std::min(a, b))) pieces_.resize(at(std::min(a, b)) + 1);
+    pieces_[at(std::min(a, b))].push_back(std::max(a, b));
   }
-  void lock_piece(Index a, Index b) { pieces_.insert({std::min(a, b), std::max(a, b)}); }
+  void unlock_piece(Index a, Index b) {
+    if (piece(a, b)) std::erase(pieces_[at(std::min(a, b))], std::max(a, b));
+  }
 
-  void unlock_piece(Index a, Index b) { pieces_.erase({std::min(a, b), std::max(a, b)}); }
-
-  void own(Index node, const Owner& owner) { owners_[node] = owner; }
+  void own(Index node, const Owner& owner) {
+    if (owners_.size() <= at(node - nodes)) owners_.resize(at(node - nodes) + 1);
+    owners_[at(node - nodes)] = owner;
+  }
   [[nodiscard]] Owner owner(Index node) const {
-    if (node < nodes) return {};
-    const auto it = owners_.find(node);
-    return it == owners_.end() ? Owner{} : it->second;
+    return node < nodes || at(node - nodes) >= owners_.size() ? Owner{} : owners_[at(node - nodes)];
   }
-  [[nodiscard]] const std::map<Index, Owner>& owners() const { return owners_; }
-  void disown(Index node) { owners_.erase(node); }
+  void disown(Index node) { own(node, {}); }
+
+  /// Steiner points of an edge, in order from a to b.
+  [[nodiscard]] const std::vector<Index>& chain(Index e) const {
+    return chains_.empty() ? no_chain_ : chains_[at(e)];
+  }
+  [[nodiscard]] std::vector<Index>& chain(Index e) {
+    if (chains_.empty()) chains_.resize(edges.size());
+    return chains_[at(e)];
+  }
+  /// Has the edge Steiner points?
+  [[nodiscard]] bool chained(Index e) const { return !chains_.empty() && !chains_[at(e)].empty(); }
 
   /// Is the node a corner of triangle f or a Steiner point on it or on its edges?
   [[nodiscard]] bool on(Index node, Index f) const {
@@ -105,7 +117,7 @@ class FrontSurface {
   }
   [[nodiscard]] bool split(Index f) const {
     for (const Index e : triangle_edges[at(f)])
-      if (chain.count(e) > 0) return true;
+      if (chained(e)) return true;
     return false;
   }
 
@@ -115,32 +127,27 @@ class FrontSurface {
     return static_cast<std::size_t>(i);
   }
 
+  [[nodiscard]] bool piece(Index a, Index b) const {
+    const std::size_t low = at(std::min(a, b));
+    if (low >= pieces_.size()) return false;
+    for (const Index n : pieces_[low])
+      if (n == std::max(a, b)) return true;
+    return false;
+  }
+
   void refuse_degenerate(std::size_t t, const Points<3>& points) const {
     const Vec3 a = vec::column(points, triangles[t][0]), b = vec::column(points, triangles[t][1]),
                c = vec::column(points, triangles[t][2]);
     for (int k = 0; k < 3; ++k) {
-      const auto flat = [&](const Vec3& x) { return Point<2>(x[(k + 1) % 3], x[(k + 2) % 3]); };
+      const auto flat = [&](const Vec3& x) { return std::array{x[(k + 1) % 3], x[(k + 2) % 3]}; };
       if (orient2d(flat(a), flat(b), flat(c)) != 0) return;
     }
     throw MeshError("triangle " + std::to_string(t) + " of the surface has no area, at " + place(a));
   }
 
   void find_edges(const Points<3>& points) {
-    struct Half {
-      Index a, b, triangle, corner;
-      bool forward;
-    };
-    std::vector<Half> halves;
-    halves.reserve(3 * triangles.size());
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      for (std::size_t i = 0; i < 3; ++i) {
-        const Index a = triangles[t][i], b = triangles[t][(i + 1) % 3];
-        halves.push_back(
-            {std::min(a, b), std::max(a, b), static_cast<Index>(t), static_cast<Index>(i), a < b});
-      }
-    std::sort(halves.begin(), halves.end(), [](const Half& x, const Half& y) {
-      return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.triangle < y.triangle;
-    });
+    const auto halves = mesh::sorted_halves(static_cast<Index>(triangles.size()), nodes,
+                                            [&](Index t, Index i) { return triangles[at(t)][at(i)]; });
     triangle_edges.resize(triangles.size());
     for (std::size_t i = 0; i < halves.size();) {
       std::size_t end = i;
@@ -190,8 +197,10 @@ class FrontSurface {
   }
 
   std::vector<Index> first_edge_;
-  std::set<std::pair<Index, Index>> pieces_;
-  std::map<Index, Owner> owners_;
+  std::vector<std::vector<Index>> pieces_;  // of edges and faces that must stay: of a node to higher ones
+  std::vector<Owner> owners_;               // of the points after the nodes
+  std::vector<std::vector<Index>> chains_;  // of the edges; empty until one has Steiner points
+  std::vector<Index> no_chain_;
 };
 
 }  // namespace tunica::meshing

@@ -25,7 +25,7 @@ struct Crossing {
 struct HermiteRegion {
   std::string name = "wall";
   bool flat = false;
-  Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
+  Vec3 point{0, 0, 0}, normal{0, 0, 0};
 };
 
 /// An edge is 3 * node + axis: it leads from the node to the next one along the axis. Every edge with

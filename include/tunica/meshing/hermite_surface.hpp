@@ -17,7 +17,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace tunica::meshing {
@@ -37,11 +36,18 @@ struct LineHit {
   Vec3 weights;  // barycentric
 };
 
+/// The hit of an edge of the grid that the surface crosses.
+struct EdgeHit {
+  std::size_t edge;
+  const LineHit* hit;
+};
+
 /// Twice the signed area of (o, p, q) in the plane; empty where rounding could change its sign.
-[[nodiscard]] inline std::optional<double> certain_area(const Point<2>& p, const Point<2>& q,
-                                                        const Point<2>& o) {
-  const Point<2> u = p - o, v = q - o;
-  const double left = u[0] * v[1], right = u[1] * v[0], area = left - right;
+[[nodiscard]] inline std::optional<double> certain_area(const std::array<double, 2>& p,
+                                                        const std::array<double, 2>& q,
+                                                        const std::array<double, 2>& o) {
+  const double left = (p[0] - o[0]) * (q[1] - o[1]), right = (p[1] - o[1]) * (q[0] - o[0]),
+               area = left - right;
   const double bound = 8 * std::numeric_limits<double>::epsilon() * (std::abs(left) + std::abs(right));
   if (!(std::abs(area) > bound)) return std::nullopt;
   return area;
@@ -67,7 +73,7 @@ struct LineHit {
          ++v)
       for (std::size_t u = first(grid.axes[b], box.lo[eb]); u < grid.size(b) && grid.axes[b][u] <= box.hi[eb];
            ++u) {
-        const Point<2> o{grid.axes[b][u], grid.axes[c][v]};
+        const std::array o{grid.axes[b][u], grid.axes[c][v]};
         std::array<std::optional<double>, 3> w;
         for (std::size_t k = 0; k < 3; ++k) {
           const Vec3 &p = x[(k + 1) % 3], &q = x[(k + 2) % 3];
@@ -79,7 +85,7 @@ struct LineHit {
         };
         if (opposite(0, 1) || opposite(1, 2) || opposite(2, 0)) continue;
         if (!w[0] || !w[1] || !w[2]) return std::nullopt;
-        const Vec3 weights = Vec3(*w[0], *w[1], *w[2]) / (*w[0] + *w[1] + *w[2]);
+        const Vec3 weights = vec::divided(Vec3(*w[0], *w[1], *w[2]), *w[0] + *w[1] + *w[2]);
         hits.push_back({u + grid.size(b) * v,
                         weights[0] * x[0][ea] + weights[1] * x[1][ea] + weights[2] * x[2][ea], t, weights});
       }
@@ -95,7 +101,7 @@ struct LineHit {
 /// the nodes along x where axis is 0. False where a node is too near to the surface, or where the
 /// parities of this axis contradict the signs.
 [[nodiscard]] inline bool mark_line(HermiteGrid& grid, std::size_t axis, const std::vector<LineHit>& hits,
-                                    std::vector<std::pair<std::size_t, const LineHit*>>& found) {
+                                    std::vector<EdgeHit>& found) {
   const auto stride = grid.strides();
   const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
   const auto& x = grid.axes[axis];
@@ -112,7 +118,7 @@ struct LineHit {
       if ((next - from) % 2 == 1) {
         inside = !inside;
         if (i == 0) return false;
-        found.emplace_back(3 * (node - stride[axis]) + axis, &hits[from + (next - from) / 2]);
+        found.push_back({3 * (node - stride[axis]) + axis, &hits[from + (next - from) / 2]});
       }
       if (axis == 0)
         grid.inside[node] = inside ? 1 : 0;
@@ -151,20 +157,21 @@ struct LineHit {
     }
     grid.inside.assign(grid.size(0) * grid.size(1) * grid.size(2), 0);
     std::array<std::optional<std::vector<detail::LineHit>>, 3> hits;
-    std::vector<std::pair<std::size_t, const detail::LineHit*>> found;
+    std::vector<detail::EdgeHit> found;
     bool good = true;
     for (std::size_t a = 0; a < 3 && good; ++a) {
       hits[a] = detail::line_hits(surface, grid, a);
       good = hits[a] && detail::mark_line(grid, a, *hits[a], found);
     }
     if (!good) continue;
-    std::sort(found.begin(), found.end(), [](const auto& p, const auto& q) { return p.first < q.first; });
+    std::sort(found.begin(), found.end(),
+              [](const detail::EdgeHit& p, const detail::EdgeHit& q) { return p.edge < q.edge; });
     if (found.empty())
       throw MeshError("the surface is thinner than the grid's spacing of " + std::to_string(options.spacing) +
                       " everywhere");
     for (const auto& [edge, hit] : found) {
       const Index region = surface.region_of(hit->triangle);
-      Crossing x{Vec3::Zero(), Vec3::Zero(), region};
+      Crossing x{Vec3(0, 0, 0), Vec3(0, 0, 0), region};
       for (int k = 0; k < 3; ++k) {
         const Index n = surface.cells(k, hit->triangle);
         x.point = vec::along(x.point, hit->weights[k], vec::column(surface.nodes, n));
@@ -176,8 +183,10 @@ struct LineHit {
       const std::size_t low = edge / 3;
       for (Eigen::Index e = 0; e < 3; ++e) x.point[e] = e == along ? hit->at : grid.point(low)[e];
       if (flat[static_cast<std::size_t>(region)]) x.normal = flat[static_cast<std::size_t>(region)]->normal;
-      x.normal = vec::length(x.normal) > 0 ? vec::unit(x.normal)
-                                           : Vec3(Vec3::Unit(along) * (grid.inside[low] != 0 ? 1.0 : -1.0));
+      if (vec::length(x.normal) > 0)
+        x.normal = vec::unit(x.normal);
+      else
+        x.normal[along] = grid.inside[low] != 0 ? 1 : -1;
       grid.edges.push_back(edge);
       grid.crossings.push_back(x);
     }

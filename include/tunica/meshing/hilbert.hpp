@@ -9,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace tunica::meshing {
@@ -47,14 +46,16 @@ namespace tunica::meshing {
   return i ^ i >> 31;
 }
 
-[[nodiscard]] inline std::vector<Index> insertion_order(std::span<const Vec3> points, const Box& box) {
+/// The first `count` of the points.
+[[nodiscard]] inline std::vector<Index> insertion_order(const std::vector<Vec3>& points, std::size_t count,
+                                                        const Box& box) {
   struct Key {
     std::uint64_t round_and_place;
     Index point;
   };
   const double side = std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2], 1e-300});
-  std::vector<Key> keys(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  std::vector<Key> keys(count);
+  for (std::size_t i = 0; i < count; ++i) {
     std::array<std::uint32_t, 3> x{};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -27,8 +26,8 @@ class Improve {
 
   /// target: sine of the dihedral angle that every tetrahedron should exceed. limit[n]: what a
   /// tetrahedron with an edge at node n of the surface can reach; the triangles there bound it.
-  static ImproveCounts run(TetComplex& complex, std::span<const double> limit, double target) {
-    Improve work(complex, limit, target);
+  static ImproveCounts run(TetComplex& complex, std::vector<double> limit, double target) {
+    Improve work(complex, std::move(limit), target);
     for (int sweep = 0; sweep < most_sweeps; ++sweep)
       if (!work.sweep(sweep)) break;
     return work.counts_;
@@ -71,11 +70,11 @@ class Improve {
   }
 
  private:
-  Improve(TetComplex& complex, std::span<const double> limit, double target)
+  Improve(TetComplex& complex, std::vector<double> limit, double target)
       : m_(complex, static_cast<Index>(limit.size())),
         smooth_(m_),
         insert_(m_),
-        limit_(limit),
+        limit_(std::move(limit)),
         target_(target) {}
 
   [[nodiscard]] bool is_bad(Index t) const { return m_.quality(t) < target_; }
@@ -214,7 +213,7 @@ class Improve {
   std::vector<Index> chosen_;
   std::vector<Quad> fresh_;
   std::vector<ImproveMesh::Moment> in_vain_;  // of each tetrahedron: when no flip helped it last
-  std::span<const double> limit_;
+  std::vector<double> limit_;
   double target_, last_count_ = 0, last_worst_ = 0;
   Index most_inserted_ = 0;
   ImproveCounts counts_;

@@ -45,7 +45,7 @@ class ImprovePlace {
         const double q = worst(c, y, value);
         if (q > value) value = q, best = y;
       }
-      if (best == x) step *= 0.5;
+      if (vec::equal(best, x)) step *= 0.5;
       x = best;
     }
     return x;

@@ -35,14 +35,16 @@ class InterfaceNudge {
     const double target = std::sin(angle * std::numbers::pi / 180);
     std::vector<char> moved(s_.nodes.size(), 0);
     for (int pass = 0; pass < passes; ++pass) {
-      std::vector<std::pair<double, Index>> bad;
+      std::vector<Bad> bad;
       for (Index t = 0; t < static_cast<Index>(cells_.cols()); ++t)
-        if (const double q = quality(t); q < target) bad.emplace_back(q, t);
-      std::sort(bad.begin(), bad.end());
+        if (const double q = quality(t); q < target) bad.push_back({q, t});
+      std::sort(bad.begin(), bad.end(), [](const Bad& a, const Bad& b) {
+        return a.quality != b.quality ? a.quality < b.quality : a.tet < b.tet;
+      });
       bool changed = false;
-      for (const auto& [was, t] : bad)
-        for (Eigen::Index i = 0; i < 4 && quality(t) < target; ++i) {
-          const Index n = cells_(i, t);
+      for (const Bad& b : bad)
+        for (Eigen::Index i = 0; i < 4 && quality(b.tet) < target; ++i) {
+          const Index n = cells_(i, b.tet);
           if (!climb(n)) continue;
           changed = true;
           if (n < s_.node_count()) moved[static_cast<std::size_t>(n)] = 1;
@@ -54,6 +56,10 @@ class InterfaceNudge {
   }
 
  private:
+  struct Bad {
+    double quality;
+    Index tet;
+  };
   [[nodiscard]] const Vec3& x(Index n) const { return points_[static_cast<std::size_t>(n)]; }
   [[nodiscard]] double quality(Index t) const {
     return sine_quality(x(cells_(0, t)), x(cells_(1, t)), x(cells_(2, t)), x(cells_(3, t)));
@@ -94,7 +100,7 @@ class InterfaceNudge {
         }
         if (const double q = worst_at(n, y); q > value) value = q, best = y;
       }
-      if (best == from) step *= 0.5;
+      if (vec::equal(best, from)) step *= 0.5;
     }
     const Vec3 from = x(n);
     for (const double share : {1.0, 0.5, 0.25}) {  // what folds or crosses may do so no longer half-way

@@ -82,8 +82,8 @@ inline void collapse_thin(EditableInterfaces& s, double angle) {
       const Index a = s.nodes(t)[k], b = s.nodes(t)[(k + 1) % 3];
       e[k] = {s.length(a, b), std::min(a, b), std::max(a, b)};
     }
-    std::sort(e.begin(), e.end());
-    (void)s.collapse(e[0].a, e[0].b, angle);
+    const InterfaceLength& least = e[1] < e[0] ? (e[2] < e[1] ? e[2] : e[1]) : e[2] < e[0] ? e[2] : e[0];
+    (void)s.collapse(least.a, least.b, angle);
   }
 }
 

@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -45,18 +45,20 @@ class InterfaceRings {
 
   /// The neighbours of a node, ascending.
   [[nodiscard]] std::vector<Spoke> spokes(Index n) const {
-    std::vector<std::pair<Index, Index>> found;  // neighbour, triangle
+    std::vector<std::uint64_t> found;  // neighbour << 32 | triangle
     for (const Index t : ring_[at(n)])
       for (const Index m : nodes(t))
-        if (m != n) found.emplace_back(m, t);
+        if (m != n) found.push_back(static_cast<std::uint64_t>(m) << 32U | static_cast<std::uint64_t>(t));
     std::sort(found.begin(), found.end());
+    const auto neighbour = [&](std::size_t i) { return static_cast<Index>(found[i] >> 32U); };
+    const auto triangle_at = [&](std::size_t i) { return at(found[i] & 0xFFFFFFFFU); };
     std::vector<Spoke> list;
     for (std::size_t i = 0; i < found.size();) {
-      Spoke s{found[i].first, 0, false};
-      const Sides& first = s_.sides[at(found[i].second)];
-      for (; i < found.size() && found[i].first == s.to; ++i) {
+      Spoke s{neighbour(i), 0, false};
+      const Sides& first = s_.sides[triangle_at(i)];
+      for (; i < found.size() && neighbour(i) == s.to; ++i) {
         ++s.triangles;
-        s.junction = s.junction || s_.sides[at(found[i].second)] != first;
+        s.junction = s.junction || s_.sides[triangle_at(i)] != first;
       }
       s.junction = s.junction || s.triangles != 2;
       list.push_back(s);
@@ -122,7 +124,7 @@ class InterfaceRings {
   [[nodiscard]] static Index third(const Nodes& n, Index a, Index b) {
     return n[0] != a && n[0] != b ? n[0] : n[1] != a && n[1] != b ? n[1] : n[2];
   }
-  [[nodiscard]] static bool in(std::span<const Index> list, Index t) {
+  [[nodiscard]] static bool in(const std::vector<Index>& list, Index t) {
     return std::find(list.begin(), list.end(), t) != list.end();
   }
 
@@ -130,7 +132,7 @@ class InterfaceRings {
     for (const Index n : nodes(t)) ring_[at(n)].push_back(t);
     grid_.add(t, triangle(nodes(t)).box());
   }
-  void leave(std::span<const Index> gone) {
+  void leave(const std::vector<Index>& gone) {
     for (const Index t : gone) {
       grid_.remove(t);
       for (const Index n : nodes(t))
@@ -138,33 +140,37 @@ class InterfaceRings {
       s_.faces[at(t)] = {-1, -1, -1};
     }
   }
-  void put(std::span<const Made> made) {
+  void put(const std::vector<Made>& made) {
     for (const Made& m : made) {
       s_.faces.push_back(m.nodes), s_.sides.push_back(m.sides);
       enter(triangle_count() - 1);
     }
   }
-  void exchange(std::span<const Index> gone, std::span<const Made> made) { leave(gone), put(made); }
+  void exchange(const std::vector<Index>& gone, const std::vector<Made>& made) { leave(gone), put(made); }
 
   /// Volumes that regions gain.
-  using Gains = std::vector<std::pair<Index, double>>;
+  struct Gain {
+    Index region;
+    double volume;
+  };
+  using Gains = std::vector<Gain>;
 
   void add_gains(Gains& gains, const Nodes& n, const Sides& sides, const Vec3& origin, double sign) const {
     const double v = sign * mesh::cone_volume(triangle(n), origin);
     for (std::size_t k = 0; k < 2; ++k) {
       if (sides[k] < 0) continue;
       std::size_t i = 0;
-      while (i < gains.size() && gains[i].first != sides[k]) ++i;
-      if (i == gains.size()) gains.emplace_back(sides[k], 0.0);
-      gains[i].second += k == 0 ? v : -v;
+      while (i < gains.size() && gains[i].region != sides[k]) ++i;
+      if (i == gains.size()) gains.push_back({sides[k], 0});
+      gains[i].volume += k == 0 ? v : -v;
     }
   }
-  [[nodiscard]] Gains gains(std::span<const Made> made, const Vec3& origin) const {
+  [[nodiscard]] Gains gains(const std::vector<Made>& made, const Vec3& origin) const {
     Gains list;
     for (const Made& m : made) add_gains(list, m.nodes, m.sides, origin, 1);
     return list;
   }
-  [[nodiscard]] Before measure(std::span<const Index> gone, Index node = -1) const {
+  [[nodiscard]] Before measure(const std::vector<Index>& gone, Index node = -1) const {
     Before b;
     b.node = node;
     if (node >= 0) b.place = x(node);
@@ -180,7 +186,7 @@ class InterfaceRings {
   }
 
   /// The sharpest fold of the triangles that an edit replaces, where they were.
-  [[nodiscard]] double sharpest(std::span<const Index> gone, const Before& before) {
+  [[nodiscard]] double sharpest(const std::vector<Index>& gone, const Before& before) {
     std::vector<Made> old;
     for (const Index t : gone) old.push_back({nodes(t), s_.sides[at(t)]});
     if (before.node < 0) return sharpest(old, gone);
@@ -191,7 +197,7 @@ class InterfaceRings {
   }
 
   /// The smallest angle between sheets at the edges of the triangles, as a cosine; those gone do not count.
-  [[nodiscard]] double sharpest(std::span<const Made> made, std::span<const Index> gone) const {
+  [[nodiscard]] double sharpest(const std::vector<Made>& made, const std::vector<Index>& gone) const {
     double most = -1;
     std::vector<Vec3> away;
     for (std::size_t i = 0; i < made.size(); ++i)

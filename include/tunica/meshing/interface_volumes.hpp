@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 namespace tunica::meshing {
@@ -44,7 +43,7 @@ class InterfaceVolumes {
 
   /// The moves, one a node, that bring the volumes to their targets to first order; none longer than `most`,
   /// none along a frozen coordinate, none of a node with share 0.
-  [[nodiscard]] std::vector<Vec3> moves(const Interfaces& s, std::span<const double> share, double most) {
+  [[nodiscard]] std::vector<Vec3> moves(const Interfaces& s, const std::vector<double>& share, double most) {
     gradients(s, share);
     const auto volume = volumes_of(s, target_.size());
     const std::size_t n = target_.size();
@@ -94,7 +93,7 @@ class InterfaceVolumes {
 
  private:
   /// dV_r / dx_n = sum of the area vectors of r's triangles at n over 3, outward of r.
-  void gradients(const Interfaces& s, std::span<const double> share) {
+  void gradients(const Interfaces& s, const std::vector<double>& share) {
     gradient_.assign(region_.size(), Vec3(0, 0, 0));
     weight_.assign(s.nodes.size(), 0);
     for (std::size_t t = 0; t < s.faces.size(); ++t) {

@@ -5,6 +5,7 @@
 
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
+#include "tunica/mesh/sorted_halves.hpp"
 #include "tunica/mesh/triangle.hpp"
 
 #include <algorithm>
@@ -65,20 +66,9 @@ struct InterfaceEdges {
 };
 
 [[nodiscard]] inline InterfaceEdges edges_of(const Interfaces& s) {
-  struct Half {
-    Index a, b, triangle;
-    [[nodiscard]] bool operator<(const Half& o) const {
-      return a != o.a ? a < o.a : b != o.b ? b < o.b : triangle < o.triangle;
-    }
-  };
-  std::vector<Half> halves;
-  halves.reserve(3 * s.faces.size());
-  for (std::size_t t = 0; t < s.faces.size(); ++t)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Index a = s.faces[t][i], b = s.faces[t][(i + 1) % 3];
-      halves.push_back({std::min(a, b), std::max(a, b), static_cast<Index>(t)});
-    }
-  std::sort(halves.begin(), halves.end());
+  const auto halves = mesh::sorted_halves(
+      static_cast<Index>(s.faces.size()), s.node_count(),
+      [&](Index t, Index i) { return s.faces[static_cast<std::size_t>(t)][static_cast<std::size_t>(i)]; });
   InterfaceEdges r;
   for (std::size_t i = 0; i < halves.size();) {
     InterfaceEdge e{halves[i].a, halves[i].b, static_cast<Index>(i), static_cast<Index>(i), false};

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -27,7 +28,10 @@ namespace tunica::meshing {
     const mesh::Surface& s, std::size_t limit = std::numeric_limits<std::size_t>::max()) {
   const auto stars = detail::open_stars(s);
   const auto count = static_cast<std::size_t>(s.cell_count());
-  std::vector<std::pair<Index, Index>> pairs;
+  std::vector<std::uint64_t> found;  // i << 32 | j
+  const auto put = [&](Index i, Index j) {
+    found.push_back(static_cast<std::uint64_t>(i) << 32U | static_cast<std::uint64_t>(j));
+  };
   std::vector<Box> boxes(count);
   std::vector<std::array<Index, 3>> settled(count);  // corners of open stars, other numbers for the others
   Index other = -1;
@@ -36,7 +40,7 @@ namespace tunica::meshing {
     const mesh::Triangle f = mesh::triangle(s, cell);
     const bool flat = stars.unknown[t] && detail::projection_axis(f) < 0;
     if (flat)
-      pairs.emplace_back(cell, cell);
+      put(cell, cell);
     else
       boxes[t] = f.box();
     for (int k = 0; k < 3; ++k) {
@@ -48,14 +52,17 @@ namespace tunica::meshing {
   const auto nodes = [&](Index t) {
     return std::array<Index, 3>{s.cells(0, t), s.cells(1, t), s.cells(2, t)};
   };
-  search::Octree(boxes).pairs([&](Index t, Index u) {
+  search::Octree(std::move(boxes)).pairs([&](Index t, Index u) {
     bool apart = false;  // in the open star of a common corner
     for (const Index n : settled[static_cast<std::size_t>(t)])
       for (const Index m : settled[static_cast<std::size_t>(u)]) apart |= n == m;
-    if (!apart && cross(nodes(t), nodes(u), position)) pairs.emplace_back(t, u);
+    if (!apart && cross(nodes(t), nodes(u), position)) put(t, u);
   });
-  std::sort(pairs.begin(), pairs.end());
-  if (pairs.size() > limit) pairs.resize(limit);
+  std::sort(found.begin(), found.end());
+  if (found.size() > limit) found.resize(limit);
+  std::vector<std::pair<Index, Index>> pairs;
+  for (const std::uint64_t f : found)
+    pairs.emplace_back(static_cast<Index>(f >> 32U), static_cast<Index>(f & 0xFFFFFFFFU));
   return pairs;
 }
 

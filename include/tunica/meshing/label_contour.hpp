@@ -6,12 +6,12 @@
 
 #include "tunica/image/labels.hpp"
 #include "tunica/meshing/interfaces.hpp"
+#include "tunica/meshing/number_table.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 namespace tunica::meshing {
@@ -209,9 +209,9 @@ class LabelContour {
     // 0: the voxel; 1-7: edges; 10-55: faces, by their two steps; 56-61: tetrahedra
     const int code = bits.size() == 4 ? 56 + path : bits.size() == 3 ? d1 << 3 | d2 : d1;
     const std::uint64_t key = 64 * r_.offset(base[0], base[1], base[2]) + static_cast<std::uint64_t>(code);
-    const auto [it, fresh] = number_.try_emplace(key, out_.node_count());
-    if (fresh) add(lo, bits);
-    return {it->second, vec::scaled(scale, middle)};
+    const Index node = number_.of(key);
+    if (node == out_.node_count()) add(lo, bits);
+    return {node, vec::scaled(scale, middle)};
   }
 
   void add(const Voxel3& lo, std::span<const int> bits) {
@@ -243,7 +243,7 @@ class LabelContour {
   static constexpr double half = 0.5;  // of the distance of voxels: as far as the true interface may be
   const image::LabelRegions& r_;
   Interfaces out_;
-  std::unordered_map<std::uint64_t, Index> number_;
+  NumberTable number_;
 };
 
 }  // namespace detail

@@ -25,7 +25,7 @@ struct LayerReport {
   Index blind = 0;                         // of those: no direction sees all triangles around the node
   double full_share = 0;                   // part of the columns with at least 0.99 of the height asked for
   double least_share = 1, mean_share = 0;  // height over that asked for
-  Vec3 thinnest = Vec3::Zero();            // foot of the least column
+  Vec3 thinnest{0, 0, 0};                  // foot of the least column
   int rounds = 0;                          // of giving way
   LayerPart layer, core;
   FillReport fill;                      // of the core, and of the surface between it and the layers

@@ -9,18 +9,18 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <span>
+#include <vector>
 
 namespace tunica::meshing {
 
 /// `cosine` is that of the cone's half angle: positive where the direction sees every face.
 struct MostNormal {
-  Vec3 direction = Vec3::Zero();
+  Vec3 direction{0, 0, 0};
   double cosine = -1;
 };
 
 /// Exact: the cone touches two or three of the normals (unit vectors), all of which are tried.
-[[nodiscard]] inline MostNormal most_normal(std::span<const Vec3> normals) {
+[[nodiscard]] inline MostNormal most_normal(const std::vector<Vec3>& normals) {
   MostNormal best;
   const auto try_axis = [&](const Vec3& axis) {
     const double size = vec::length(axis);

@@ -4,6 +4,7 @@
 
 #include "tunica/core/types.hpp"
 #include "tunica/core/vec.hpp"
+#include "tunica/mesh/sorted_halves.hpp"
 #include "tunica/mesh/triangle.hpp"
 #include "tunica/search/octree.hpp"
 
@@ -116,7 +117,7 @@ class SurfaceSize {
   /// Angle-weighted normals of nodes and normals of edges: they tell the side [BAERENTZEN05].
   void find_normals() {
     normal_.assign(at(points_.cols()), Vec3(0, 0, 0));
-    std::vector<HalfEdge> halves;
+    std::vector<Vec3> unit;  // normals of the triangles
     edge_normal_.resize(at(triangles_.cols()));
     for (Index t = 0; t < static_cast<Index>(triangles_.cols()); ++t) {
       const mesh::Triangle tri = triangle(t);
@@ -126,28 +127,21 @@ class SurfaceSize {
         const Vec3 u = vec::minus(p[(i + 1) % 3], p[i]), v = vec::minus(p[(i + 2) % 3], p[i]);
         Vec3& sum = normal_[at(triangles_(static_cast<Eigen::Index>(i), t))];
         sum = vec::along(sum, std::atan2(vec::length(vec::cross(u, v)), vec::dot(u, v)), n);
-        const Index a = triangles_(static_cast<Eigen::Index>((i + 1) % 3), t);
-        const Index b = triangles_(static_cast<Eigen::Index>((i + 2) % 3), t);
-        halves.push_back({std::min(a, b), std::max(a, b), t, i, n});  // opposite to corner i
       }
+      unit.push_back(n);
     }
-    std::sort(halves.begin(), halves.end(), [](const HalfEdge& x, const HalfEdge& y) {
-      return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.triangle < y.triangle;
-    });
+    const auto halves =
+        mesh::sorted_halves(static_cast<Index>(triangles_.cols()), static_cast<Index>(points_.cols()),
+                            [&](Index t, Index i) { return triangles_(i, t); });
     for (std::size_t i = 0; i < halves.size();) {
       std::size_t end = i;
       Vec3 sum(0, 0, 0);
       for (; end < halves.size() && halves[end].a == halves[i].a && halves[end].b == halves[i].b; ++end)
-        sum = vec::plus(sum, halves[end].normal);
-      for (; i < end; ++i) edge_normal_[at(halves[i].triangle)][halves[i].corner] = sum;
+        sum = vec::plus(sum, unit[at(halves[end].triangle)]);
+      for (; i < end; ++i)  // of a corner: that of the edge opposite to it
+        edge_normal_[at(halves[i].triangle)][at((halves[i].corner + 2) % 3)] = sum;
     }
   }
-
-  struct HalfEdge {
-    Index a, b, triangle;
-    std::size_t corner;
-    Vec3 normal;
-  };
 
   const Points<3>& points_;
   const Connectivity<3>& triangles_;

@@ -20,7 +20,7 @@ namespace detail {
 }
 
 /// x without its component `axis`.
-[[nodiscard]] inline Point<2> dropped(const Vec3& x, int axis) {
+[[nodiscard]] inline std::array<double, 2> dropped(const Vec3& x, int axis) {
   return {x[(axis + 1) % 3], x[(axis + 2) % 3]};
 }
 
@@ -101,10 +101,11 @@ template <class Position>
   }
   if (shared == 1) return detail::meets(a.b, a.c, b) || detail::meets(b.b, b.c, a);
   if (detail::apart(a, b) || detail::apart(b, a)) return false;
-  for (const auto& [p, q] : {std::pair{&a.a, &a.b}, {&a.b, &a.c}, {&a.c, &a.a}})
-    if (detail::meets(*p, *q, b)) return true;
-  for (const auto& [p, q] : {std::pair{&b.a, &b.b}, {&b.b, &b.c}, {&b.c, &b.a}})
-    if (detail::meets(*p, *q, a)) return true;
+  const std::array<const Vec3*, 4> p{&a.a, &a.b, &a.c, &a.a}, q{&b.a, &b.b, &b.c, &b.a};
+  for (std::size_t e = 0; e < 3; ++e)
+    if (detail::meets(*p[e], *p[e + 1], b)) return true;
+  for (std::size_t e = 0; e < 3; ++e)
+    if (detail::meets(*q[e], *q[e + 1], a)) return true;
   return false;
 }
 

@@ -13,7 +13,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -33,14 +32,14 @@ struct Nearest {
 class Octree {
  public:
   Octree() = default;
-  explicit Octree(std::span<const Box> boxes) : boxes_(boxes.begin(), boxes.end()) {
+  explicit Octree(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
     Box all;
-    for (const Box& b : boxes) all.extend(b);
+    for (const Box& b : boxes_) all.extend(b);
     double extent = 0;
     for (int a = 0; a < 3; ++a) extent = std::max(extent, all.hi[a] - all.lo[a]);
     from_ = all.lo, scale_ = extent > 0 && std::isfinite(extent) ? 1 / extent : 1;
-    std::vector<Key> keys(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) keys[i] = {code(boxes[i]), static_cast<Index>(i)};
+    std::vector<Key> keys(boxes_.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = {code(boxes_[i]), static_cast<Index>(i)};
     sort(keys);
     if (!keys.empty()) build(keys, 0, keys.size(), 3 * axis_bits);
   }
