@@ -178,6 +178,10 @@ inline void fill_hexahedra(const ImageVessel& vessel, FilledVessel& out, Stages&
   detail::tell_hexahedra(out.hexes, q, report);
   report["fill"]["surface_distance_rms"] = filled.report.distance_rms;
   report["fill"]["surface_distance_max"] = filled.report.distance_max;
+  if (filled.report.inverted > 0)
+    throw MeshError(count_text(static_cast<std::size_t>(filled.report.inverted), "hexahedron", "hexahedra") +
+                    " would be inverted, the worst at " + place(q.worst_place) +
+                    "; a shorter --edge gives more room");
   if (filled.report.below_sound > 0)
     warn(report, count_text(static_cast<std::size_t>(filled.report.below_sound), "hexahedron", "hexahedra") +
                      " with a scaled Jacobian below 0.2, the worst of " +

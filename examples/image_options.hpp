@@ -65,7 +65,9 @@ inline void add_image_options(Cli& cli, ImageOptions& o,
   cli.option("--smooth", "N", "sweeps of smoothing that keeps the volume (20)",
              [&o](const std::string& text) {
                o.smooth = number_of<int>(text);
-               if (o.smooth < 0) throw UsageError("must be 0 or more");
+               constexpr int most = 1000;  // it takes about a hundred for all that it can do
+               if (o.smooth < 0 || o.smooth > most)
+                 throw UsageError("must be from 0 to " + std::to_string(most));
              });
 }
 

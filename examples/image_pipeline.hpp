@@ -152,9 +152,13 @@ inline constexpr int surface_stages = 3;
         detail::without_specks(detail::contour(v.image, v.region, o, borders), v.edge, specks, report);
     if (o.surface == Contourer::dual_contouring) {  // its faces lie outside of what is convex, and may cross
       meshing::level(made, v.image, *o.iso, {.reach = 0.25 * v.smallest});
-      if (const auto tangled = meshing::untangle(made); tangled.crossings_after > 0)
+      const auto tangled = meshing::untangle(made);
+      if (tangled.crossings_after > 0)
         warn(report, "the contour still crosses itself: " +
                          count_text(tangled.crossings_after, "pair", "pairs") + " of triangles");
+      if (tangled.released > 0)
+        warn(report, count_text(static_cast<std::size_t>(tangled.released), "node", "nodes") +
+                         " at the border of the image left its planes, where the contour crossed itself");
     }
     return made;
   });

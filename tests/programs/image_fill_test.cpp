@@ -2,10 +2,13 @@
 // What image_to_mesh fills a vessel with: hexahedra, voxels, layers, sizes that follow the vessel.
 #include "programs/run_program.hpp"
 #include "support/shared.hpp"
+#include "support/work_cases.hpp"
+#include "tunica/io/vtk_image_write.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -133,5 +136,17 @@ TEST_SUITE("job") {
         CHECK(r({"fill", "tetrahedra"}) > 1.2 * same({"fill", "tetrahedra"}));
       CHECK(faults(*checker, folder, "a.vtu --surface a.surface.vtp --tol 0") == "");
     }
+  }
+
+  TEST_CASE("image_to_mesh: hexahedra that would be inverted are refused and leave no file") {
+    if (program("image_to_mesh").empty()) return;
+    const Folder folder;
+    std::uint64_t at = std::uint64_t{2} << 32;  // noise up to the border, sampled far too coarsely
+    tunica::io::write_vtk_image(folder.path() / "noise.vtk",
+                                sampled<float>(8, [&](const tunica::Vec3&) { return noise(++at); }));
+    const Run r = mesh(folder, "noise.vtk --iso 0 --fill hexes");
+    CHECK(r.outcome.status == 1);
+    CHECK(has(r.outcome.err, "hexahedra would be inverted, the worst at ("));
+    CHECK(folder.files().size() == 1);
   }
 }

@@ -76,7 +76,11 @@ namespace detail {
   ClosedSurface out;
   mesh::Surface& s = file.surface;
   const mesh::Topology t = mesh::topology(s);
-  if (t.triangles == 0) throw InputError(name + ": every facet has two equal corners");
+  if (t.triangles == 0)
+    throw InputError(name + (file.collapsed == file.facets
+                                 ? ": every facet has two equal corners"
+                                 : ": no facet is left of " + std::to_string(file.facets) +
+                                       " but those without area, back to back or on stray sheets"));
   require_length(name, "the diagonal of the surface", mesh::bounding_box(s.nodes).diagonal());
   const std::string open =
       t.open_edges > 0 ? "; " + std::to_string(t.open_edges) + " edges have one facet only" : "";

@@ -65,6 +65,9 @@ struct Bonds {
   std::vector<std::array<Index, 2>> along;  // of a rim node
 
   [[nodiscard]] Bond of(Index n) const { return bond[static_cast<std::size_t>(n)]; }
+  [[nodiscard]] bool any() const {
+    return std::any_of(bond.begin(), bond.end(), [](Bond b) { return b != Bond::none; });
+  }
 };
 
 /// Bonds of the nodes of a closed surface. A rim node touches one flat region and one that is not flat; where

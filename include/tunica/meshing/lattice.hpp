@@ -3,6 +3,9 @@
 // dihedral angles of 60 and 90 degrees, so only those near the surface ever need repair.
 #pragma once
 
+#include "tunica/core/error.hpp"
+#include "tunica/core/expect.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/core/types.hpp"
 #include "tunica/core/vec.hpp"
 #include "tunica/meshing/size_field.hpp"
@@ -19,20 +22,23 @@
 namespace tunica::meshing {
 
 struct LatticeOptions {
-  double edge = 1.0;          // mean edge of the lattice over the local size h(x)
-  double clearance = 0.5;     // distance to the surface over the larger of its triangles there and edge * h
-  Vec3 shift = Vec3::Zero();  // of the origin, in lattice cells
+  double edge = 1.0;       // mean edge of the lattice over the local size h(x)
+  double clearance = 0.5;  // distance to the surface over the larger of its triangles there and edge * h
+  Vec3 shift{0, 0, 0};     // of the origin, in lattice cells
 };
 
 /// Mean over the 6 + 8 edges at a node: 2 x a and 4 x a sqrt(3)/2 a tetrahedron.
 inline constexpr double lattice_mean_edge = 0.911;
 
-/// The points; `size` gives the target edge length, `surface` the distances.
+/// The points; `size` gives the target edge length, `surface` the distances. MeshError where the size inside
+/// is no length, with the place, and where it would take more than 200 million tetrahedra.
 template <SizeField Size>
 class Lattice {
  public:
   Lattice(const SurfaceSize& surface, const Size& size, const LatticeOptions& options)
-      : surface_(surface), size_(size), options_(options) {}
+      : surface_(surface), size_(size), options_(options) {
+    TUNICA_EXPECT(options.edge > 0, "the lattice has an edge length");
+  }
 
   [[nodiscard]] std::vector<Vec3> points() {
     // The leaves halve a root cube; at the reference size they have exactly the wanted edge. The unit
@@ -82,24 +88,27 @@ class Lattice {
   /// which brings leaves nearest to what is wanted there: the mean of log2 h on a circle.
   [[nodiscard]] double reference_size() const {
     std::vector<double> h = surface_.node_sizes();
-    for (std::size_t i = 0; i < h.size(); ++i) h[i] = size_(surface_.node(static_cast<Index>(i)));
+    for (std::size_t i = 0; i < h.size(); ++i) h[i] = size_at(surface_.node(static_cast<Index>(i)));
     std::nth_element(h.begin(), h.begin() + static_cast<std::ptrdiff_t>(h.size() / 2), h.end());
     const double median = h[h.size() / 2];
     if constexpr (std::same_as<Size, SurfaceSize> || std::same_as<Size, SizeWithin<SurfaceSize>>)
       return median;
     constexpr int samples = 12;  // an axis
     const Box& box = surface_.box();
-    double cosine = 0, sine = 0;
+    double cosine = 0, sine = 0, number = 0;
     for (int i = 0; i < samples * samples * samples; ++i) {
       const std::array<int, 3> at{i % samples, i / samples % samples, i / samples / samples};
       Vec3 x = box.lo;
       for (int k = 0; k < 3; ++k)
         x[k] += (at[static_cast<std::size_t>(k)] + 0.5) / samples * (box.hi[k] - box.lo[k]);
       if (!surface_.nearest(x).inside) continue;
-      const double wanted = size_(x), turn = 2 * std::numbers::pi * std::log2(wanted / median);
+      const double wanted = size_at(x), turn = 2 * std::numbers::pi * std::log2(wanted / median);
       const double count = 1 / (wanted * wanted * wanted);  // as many nodes stand there
-      cosine += count * std::cos(turn), sine += count * std::sin(turn);
+      cosine += count * std::cos(turn), sine += count * std::sin(turn), number += count;
     }
+    const Vec3 side = vec::minus(box.hi, box.lo);
+    const double sampled = side[0] * side[1] * side[2] / (samples * samples * samples);
+    require_countable(number * sampled / std::pow(options_.edge / lattice_mean_edge, 3));
     return median * std::exp2(std::atan2(sine, cosine) / (2 * std::numbers::pi));
   }
 
@@ -109,13 +118,15 @@ class Lattice {
     const Key centre{corner[0] + half, corner[1] + half, corner[2] + half};
     const Vec3 x = place(centre);
     const double length = static_cast<double>(edge) * unit_, radius = 0.5 * std::sqrt(3.0) * length;
+    double instead = 0;  // outside, where the field need not give a length
     if (!deep) {
       const auto near = surface_.nearest(x);
       const double distance = near.distance;
       if (!near.inside && distance > radius) return;
+      if (!near.inside) instead = near.size;
       deep = near.inside && distance - radius > clearance(near.size, x);
     }
-    const double wanted = cell_edge(size_(x));
+    const double wanted = cell_edge(size_at(x, instead));
     if (length > std::sqrt(2.0) * wanted && half > 1) {
       for (int i = 0; i < 8; ++i)
         subdivide(
@@ -123,6 +134,7 @@ class Lattice {
             half, deep);
       return;
     }
+    require_countable(++leaves_);
     offer(centre, deep);
     for (int i = 0; i < 8; ++i)
       offer({corner[0] + (i & 1 ? edge : 0), corner[1] + (i & 2 ? edge : 0), corner[2] + (i & 4 ? edge : 0)},
@@ -139,14 +151,29 @@ class Lattice {
   }
 
   [[nodiscard]] double clearance(double surface_size, const Vec3& x) const {
-    return options_.clearance * std::max(surface_size, size_(x) * options_.edge);
+    return options_.clearance * std::max(surface_size, size_at(x) * options_.edge);
+  }
+
+  [[nodiscard]] double size_at(const Vec3& x, double instead = 0) const {
+    const double h = size_(x);
+    if (h > 0 && std::isfinite(h)) return h;
+    if (!(instead > 0))
+      throw MeshError("the size field gives an edge length of " + seven_digits(h) + " at " +
+                      tunica::place(x));
+    return instead;
+  }
+
+  static void require_countable(double leaves) {
+    constexpr double tetrahedra = 12, most = 2e8;  // in a leaf; in all
+    if (!(leaves * tetrahedra <= most))
+      throw MeshError("the size field would take more than " + seven_digits(most) + " tetrahedra");
   }
 
   const SurfaceSize& surface_;
   const Size& size_;
   LatticeOptions options_;
-  Vec3 origin_ = Vec3::Zero();
-  double unit_ = 1;
+  Vec3 origin_{0, 0, 0};
+  double unit_ = 1, leaves_ = 0;
   std::vector<Key> found_;
 };
 

@@ -83,6 +83,10 @@ struct Materials {
   for (const auto& r : regions.regions)
     if (const auto at = place_of(r.label); r.label != 0 && (at == labels.end() || *at != r.label))
       labels.insert(at, r.label);
+  constexpr std::size_t most = 10000;  // pairs of them are counted by an Index
+  if (labels.size() > most)
+    throw InputError("the image has " + std::to_string(labels.size()) + " labels, more than " +
+                     std::to_string(most));
   for (const std::int64_t label : labels) {
     MaterialReport one{.label = label, .name = "material " + std::to_string(label)};
     for (const LabelName& n : names)

@@ -103,8 +103,6 @@ template <SizeField Size>
       for (const Vec3& x : {vec::between(f.a, f.b, 0.5), vec::between(f.b, f.c, 0.5),
                             vec::between(f.c, f.a, 0.5)}) {  // exact for a quadratic 1/h^2
         const double h = size(x);
-        if (!(h > 0 && std::isfinite(h)))
-          throw MeshError("the size field gives an edge length of " + seven_digits(h) + " at " + place(x));
         least = std::min(least, h);
         wanted += f.area() / 3 / h / h / equilateral;
       }
@@ -150,7 +148,10 @@ template <SizeField Size>
   TUNICA_EXPECT(options.edge >= 0, "the longest edge is positive, or 0 for any");
   const double longest = options.edge > 0 ? options.edge : std::numeric_limits<double>::infinity();
   const auto bounded = [&size, longest](const Vec3& x) {
-    return std::min(static_cast<double>(size(x)), longest);
+    const double h = std::min(static_cast<double>(size(x)), longest);
+    if (!(h > 0 && std::isfinite(h)))
+      throw MeshError("the size field gives an edge length of " + seven_digits(h) + " at " + place(x));
+    return h;
   };
   const double wanted = detail::count_triangles(s, bounded);
   require_no_crossing(s);

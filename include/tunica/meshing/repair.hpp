@@ -54,7 +54,10 @@ inline void clean(mesh::Surface& s, RepairReport& report) {
   }
   detail::agree(s, report);
   if (options.extent == RepairExtent::full) {
-    if (options.hole_edges > 0) detail::fill_holes(s, options.hole_edges, report);
+    if (options.hole_edges > 0) {
+      detail::fill_holes(s, options.hole_edges, report);
+      detail::drop_duplicates(s, report);  // a lone facet and the one that fills it bound nothing
+    }
     drop_unused_nodes(s);
     detail::face_outward(s, report);
     detail::part_sheets(s, report);
