@@ -2,7 +2,9 @@
 // Laws of the whole F with P and dP/dF in closed form: compressible neo-Hooke and St Venant-Kirchhoff.
 #pragma once
 
+#include "tunica/core/unroll.hpp"
 #include "tunica/solid/material.hpp"
+#include "tunica/solid/three_terms.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -31,24 +33,35 @@ struct CompressibleNeoHooke {
   }
   /// A_iJkL = mu d_ik d_JL + lambda g_iJ g_kL + (mu - lambda ln J) g_iL g_kJ with g = F^-T
   template <class S>
-  [[nodiscard]] Response<S> response(const Tensor<S>& F) const {
+  [[nodiscard]] ThreeTerms<S> three_terms(const Tensor<S>& F) const {
     using std::log;
-    Tensor<S> g = cofactor(F);
-    const S J = F.m[0] * g.m[0] + F.m[1] * g.m[1] + F.m[2] * g.m[2];
-    g *= S(1) / J;
-    const S swap = S(mu) - S(lambda) * log(J);
-    const Tensor<S> lambda_g = S(lambda) * g, swap_g = swap * g;
-    Response<S> r;
+    ThreeTerms<S> r;
+    r.g = cofactor(F);
+    const S J = F.m[0] * r.g.m[0] + F.m[1] * r.g.m[1] + F.m[2] * r.g.m[2], inverse = S(1) / J;
+    r.straight = S(mu), r.product = S(lambda), r.swap = S(mu) - S(lambda) * log(J);
     for (std::size_t p = 0; p < 9; ++p) {
-      r.P.m[p] = S(mu) * F.m[p] - swap_g.m[p];
-      for (std::size_t q = p; q < 9; ++q) {
+      r.g.m[p] *= inverse;
+      r.P.m[p] = S(mu) * F.m[p] - r.swap * r.g.m[p];
+    }
+    return r;
+  }
+  template <class S>
+  [[nodiscard]] Response<S> response(const Tensor<S>& F) const {
+    const ThreeTerms<S> t = three_terms(F);
+    const Tensor<S>& g = t.g;
+    Response<S> r;
+    r.P = t.P;
+#pragma GCC unroll 9
+    for (std::size_t p = 0; p < 9; ++p)
+#pragma GCC unroll 9
+      for (std::size_t q = 0; q < 9; ++q) {
+        if (q < p) continue;
         const std::size_t i = p / 3, K = p % 3, k = q / 3, L = q % 3;
-        S A = lambda_g.m[p] * g.m[q] + swap_g.m[3 * i + L] * g.m[3 * k + K];
-        if (p == q) A += S(mu);
+        S A = t.product * g.m[p] * g.m[q] + t.swap * g.m[3 * i + L] * g.m[3 * k + K];
+        if (p == q) A += t.straight;
         r.A[9 * p + q] = A;
         r.A[9 * q + p] = A;
       }
-    }
     return r;
   }
 };
@@ -77,7 +90,9 @@ struct StVenantKirchhoff {
     Response<S> r;
     r.P = product(F, T);
     const Tensor<S> lambda_F = S(lambda) * F, mu_F = S(mu) * F, mu_b = S(mu) * b;
-    for (std::size_t p = 0; p < 9; ++p)
+    TUNICA_UNROLL
+    for (std::size_t p = 0; p < 9; ++p) {
+      TUNICA_UNROLL
       for (std::size_t q = p; q < 9; ++q) {
         const std::size_t i = p / 3, K = p % 3, k = q / 3, L = q % 3;
         S A = lambda_F.m[p] * F.m[q] + mu_F.m[3 * i + L] * F.m[3 * k + K];
@@ -86,6 +101,7 @@ struct StVenantKirchhoff {
         r.A[9 * p + q] = A;
         r.A[9 * q + p] = A;
       }
+    }
     return r;
   }
 

@@ -7,6 +7,7 @@
 #include "tunica/solid/isochoric_part.hpp"
 #include "tunica/solid/kernel_bar.hpp"
 #include "tunica/solid/kernel_blocks.hpp"
+#include "tunica/solid/kernel_terms.hpp"
 #include "tunica/solid/locking.hpp"
 #include "tunica/solid/material.hpp"
 
@@ -274,14 +275,20 @@ struct Kernel {
     Centre<S> centre(X, u);
     for (std::size_t q = 0; q < points; ++q) {
       const Here<S> here(X, u, stored, q, out);
-      Response<S> r = solid::response(part(law), seen(here, centre), point<Law, S>(data, q));
-      cure(here, p, centre, r);
-      here.at.add_forces(r.P, here.at.weight, out.f);
-      if constexpr (bar) here.at.add_forces(centre.M, here.at.weight, centre.middle);
-      if (q == 0)
-        add_tangent<Locking::blocks, false>(r.A.data(), here.at.G, here.at.weight, out.K);
-      else
-        add_tangent<Locking::blocks, true>(r.A.data(), here.at.G, here.at.weight, out.K);
+      if constexpr (std::is_same_v<Locking, Pointwise> && GivesThreeTerms<Law, S>) {
+        const auto r = law.three_terms(here.F);
+        here.at.add_forces(r.P, here.at.weight, out.f);
+        q == 0 ? add_three_terms<false>(r, here.at, out.K) : add_three_terms<true>(r, here.at, out.K);
+      } else {
+        Response<S> r = solid::response(part(law), seen(here, centre), point<Law, S>(data, q));
+        cure(here, p, centre, r);
+        here.at.add_forces(r.P, here.at.weight, out.f);
+        if constexpr (bar) here.at.add_forces(centre.M, here.at.weight, centre.middle);
+        if (q == 0)
+          add_tangent<Locking::blocks, false>(r.A.data(), here.at.G, here.at.weight, out.K);
+        else
+          add_tangent<Locking::blocks, true>(r.A.data(), here.at.G, here.at.weight, out.K);
+      }
     }
     finish(law, out);
     if constexpr (mean) add_products<Locking::blocks>(out.bulk / out.volume, out.slope, out.slope, out.K);
