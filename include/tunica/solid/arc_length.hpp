@@ -43,7 +43,7 @@ class ArcLength {
     TUNICA_EXPECT(options.first_step > 0 && options.largest_step >= options.first_step &&
                       options.smallest_step <= options.first_step && options.smallest_step > 0,
                   "steps of an arc are positive, the first between the smallest and the largest");
-    previous_ = Eigen::VectorXd::Zero(wall.body().unknowns());
+    previous_ = Eigen::VectorXd::Zero(3 * wall.body().mesh().node_count());
   }
 
   /// The next equilibrium. The first step goes where the load grows, each other one goes on as the last.
@@ -58,12 +58,12 @@ class ArcLength {
       return report;
     }
     if (report.solve = newton_.rate(problem, problem.from, wall_.load(), rate);
-        report.solve.status != Status::converged || !(rate.norm() > 0))
+        report.solve.status != Status::converged || !(problem.moved(rate).norm() > 0))
       return report;
-    const double sign = previous_.dot(rate) < 0 ? -1 : 1;
+    const double sign = previous_.dot(problem.moved(rate)) < 0 ? -1 : 1;
     for (double length = length_; length >= options_.smallest_step; length *= 0.5, ++report.cuts) {
       problem.squared = length * length * static_cast<double>(wall_.body().mesh().node_count());
-      const double d_load = sign * std::sqrt(problem.squared) / rate.norm();
+      const double d_load = sign * std::sqrt(problem.squared) / problem.moved(rate).norm();
       (void)problem.residual(problem.from, wall_.load(), r, la::no_step);
       problem.direction(d_load * rate);
       Eigen::VectorXd u = problem.from + d_load * rate;
@@ -74,7 +74,7 @@ class ArcLength {
         if (newton.inadmissible) report.inverted_cell = wall_.body().inverted_cell();
         continue;
       }
-      previous_ = u - problem.from;
+      previous_ = problem.moved(u - problem.from);
       wall_.accept(u, load);
       report.load = load;
       report.length = length;
@@ -101,10 +101,17 @@ class ArcLength {
       return -wall.load_slope(u);
     }
     [[nodiscard]] la::Border border(const Eigen::VectorXd& u, double) const {
-      const Eigen::VectorXd du = u - from;
-      return {.g = du.squaredNorm() - squared, .scale = squared, .in_x = 2 * du};
+      la::Border border{.scale = squared, .in_x = Eigen::VectorXd::Zero(u.size())};
+      const Eigen::VectorXd du = moved(u - from);
+      border.g = du.squaredNorm() - squared;
+      border.in_x.head(du.size()) = 2 * du;
+      return border;
     }
     [[nodiscard]] la::SparseMatrix pattern() const { return wall.body().pattern(); }
+    // The displacements alone, if there are other unknowns after them.
+    [[nodiscard]] Eigen::VectorXd moved(const Eigen::VectorXd& du) const {
+      return du.head(3 * wall.body().mesh().node_count());
+    }
   };
 
   Wall& wall_;
