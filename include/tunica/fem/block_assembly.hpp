@@ -119,20 +119,20 @@ class BlockAssembly {
     auto* const values = values_of(A);
     for (int l = 0; l < pack.count; ++l) {
       const Index* const place = places_of(pack.cell[l]);
-      const auto* from = elements.of(l);
-      if (storage_ == la::BlockStorage::upper)
-        for (int p = 0; p < pairs; ++p, from += elements.step) {
+      if (storage_ == la::BlockStorage::upper) {
+        for (int p = 0; p < pairs; ++p) {
           if (place[p] >= 0)
-            add_block(from, values + block * std::ptrdiff_t{place[p]});
+            elements.add(l, p, values + block * std::ptrdiff_t{place[p]});
           else
-            add_turned(from, values + block * std::ptrdiff_t{~place[p]});
+            elements.add_turned(l, p, values + block * std::ptrdiff_t{~place[p]});
         }
-      else
-        for (int a = 0; a < nodes; ++a)
-          for (int b = a; b < nodes; ++b, from += elements.step) {
-            add_block(from, values + block * std::ptrdiff_t{place[nodes * a + b]});
-            if (b > a) add_turned(from, values + block * std::ptrdiff_t{place[nodes * b + a]});
+      } else {
+        for (int a = 0, p = 0; a < nodes; ++a)
+          for (int b = a; b < nodes; ++b, ++p) {
+            elements.add(l, p, values + block * std::ptrdiff_t{place[nodes * a + b]});
+            if (b > a) elements.add_turned(l, p, values + block * std::ptrdiff_t{place[nodes * b + a]});
           }
+      }
     }
   }
 
@@ -145,9 +145,7 @@ class BlockAssembly {
     auto* const values = values_of(A);
     for (int l = 0; l < pack.count; ++l) {
       const Index* const place = places_of(pack.cell[l]);
-      const auto* from = elements.of(l);
-      for (int p = 0; p < nodes * nodes; ++p, from += elements.step)
-        add_block(from, values + block * std::ptrdiff_t{place[p]});
+      for (int p = 0; p < nodes * nodes; ++p) elements.add(l, p, values + block * std::ptrdiff_t{place[p]});
     }
   }
 
@@ -165,21 +163,39 @@ class BlockAssembly {
   }
 
  private:
-  /// The blocks of a pack, lane by lane: numbers of a block are brought together, single ones stay as they
-  /// lie.
+  /// The blocks of a pack, lane by lane: numbers of a block are brought together, single ones stay where they
+  /// are.
   template <class S, int Blocks>
   struct Elements {
     using T = typename Lanes<S>::type;
-    static constexpr int width = Lanes<S>::count, step = block == 1 ? width : block;
-    alignas(64) T number[Blocks * block * width];
+    static constexpr int width = Lanes<S>::count, size = Blocks * block;
+    static constexpr bool brought = block > 1 && width > 1;
+    const S* K;
+    alignas(64) T row[brought ? size * width : 1];
 
-    TUNICA_INLINE explicit Elements(const S (&K)[Blocks][block]) {
-      if constexpr (block == 1)
-        __builtin_memcpy(number, &K[0][0], sizeof number);
-      else
-        lanes_to_rows<Blocks * block>(&K[0][0], number, Blocks * block);
+    TUNICA_INLINE explicit Elements(const S (&blocks)[Blocks][block]) : K(&blocks[0][0]) {
+      if constexpr (brought) lanes_to_rows<size>(K, row, size);
     }
-    TUNICA_INLINE const T* of(int lane) const { return number + lane * (block == 1 ? 1 : Blocks * block); }
+    /// Number k of all blocks in a row.
+    [[nodiscard]] TUNICA_INLINE T number(int lane, int k) const {
+      if constexpr (brought) return row[lane * size + k];
+      T value;
+      __builtin_memcpy(&value, reinterpret_cast<const char*>(K + k) + sizeof(T) * static_cast<unsigned>(lane),
+                       sizeof value);
+      return value;
+    }
+    template <class To>
+    TUNICA_INLINE void add(int lane, int p, To* to) const {
+#pragma GCC unroll 16
+      for (int k = 0; k < block; ++k) to[k] += number(lane, block * p + k);
+    }
+    template <class To>
+    TUNICA_INLINE void add_turned(int lane, int p, To* to) const {
+#pragma GCC unroll 4
+      for (int r = 0; r < N; ++r)
+#pragma GCC unroll 4
+        for (int c = 0; c < N; ++c) to[r * N + c] += number(lane, block * p + c * N + r);
+    }
   };
 
   template <class S, int Dim, class T>
@@ -196,7 +212,9 @@ class BlockAssembly {
   }
 
   /// True if the cell, or one beside it, has the last node, behind which nothing may be read.
-  [[nodiscard]] bool at_end(Index cell) const { return at_end_[static_cast<std::size_t>(cell / lanes)] != 0; }
+  [[nodiscard]] bool at_end(Index cell) const {
+    return at_end_[static_cast<std::size_t>(cell / lanes)] != 0;
+  }
 
   template <int W, class Body, class Next>
   void for_each_pack_then(Body& body, Next&& fetch) const {
@@ -231,19 +249,6 @@ class BlockAssembly {
         if constexpr ((block - 1) % line != 0) __builtin_prefetch(at + block - 1, 1);
       }
     }
-  }
-
-  template <class T>
-  TUNICA_INLINE static void add_block(const T* from, T* to) {
-#pragma GCC unroll 16
-    for (int k = 0; k < block; ++k) to[k] += from[k];
-  }
-  template <class T>
-  TUNICA_INLINE static void add_turned(const T* from, T* to) {
-#pragma GCC unroll 4
-    for (int r = 0; r < N; ++r)
-#pragma GCC unroll 4
-      for (int c = 0; c < N; ++c) to[r * N + c] += from[c * N + r];
   }
 
   template <class Matrix>
