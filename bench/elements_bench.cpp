@@ -2,6 +2,7 @@
 // Kernel tier: element kernels of the wall and of the blood, assembled over a mesh. The counter `error` is
 // what the kernel is off by: a tangent against central differences of its forces, momentum against its row
 // sums.
+#include "support/kernel_time.hpp"
 #include "tunica/core/units.hpp"
 #include "tunica/fluid/projection.hpp"
 #include "tunica/la/newton.hpp"
@@ -12,6 +13,7 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <memory>
 
 namespace {
 
@@ -65,6 +67,40 @@ void hex8_tangent(benchmark::State& state) {
   state.counters["error"] = (product - difference).norm() / difference.norm();
 }
 BENCHMARK(hex8_tangent)->Unit(benchmark::kMillisecond);
+
+// Forces and tangents of elements alone, a lane an element: `error` is K v to the derivative of the forces by
+// duals.
+template <class K, class S, class Law>
+void kernel_tangent(benchmark::State& state, const Law& law) {
+  namespace detail = bench::kernel_detail;
+  const auto elements = std::make_unique<detail::Elements<K, S>>();
+  const auto data = detail::fibre_data<Law, S, K::points>();
+  const auto out = std::make_unique<typename K::template Tangent<S>>();
+  for (auto _ : state)
+    for (int e = 0; e < elements->count; ++e) {
+      K::tangent(law, elements->X[e], elements->u[e], data.data(), *out);
+      benchmark::DoNotOptimize(out.get());
+      benchmark::ClobberMemory();
+    }
+  state.SetItemsProcessed(state.iterations() * elements->count * Lanes<S>::count);
+  state.counters["error"] = detail::off_duals<K>(law);
+}
+void hex8_kernel_double(benchmark::State& state) {
+  kernel_tangent<bench::kernel_detail::Hex, double>(state, bench::kernel_detail::any_law);
+}
+void hex8_kernel_packs(benchmark::State& state) {
+  kernel_tangent<bench::kernel_detail::Hex, Pack<double>>(state, bench::kernel_detail::any_law);
+}
+void hex8_kernel_fibres(benchmark::State& state) {
+  kernel_tangent<bench::kernel_detail::Fibre, Pack<double>>(state, bench::kernel_detail::wall);
+}
+void tet10_kernel_packs(benchmark::State& state) {
+  kernel_tangent<bench::kernel_detail::Tet, Pack<double>>(state, bench::kernel_detail::any_law);
+}
+BENCHMARK(hex8_kernel_double)->Unit(benchmark::kMicrosecond);
+BENCHMARK(hex8_kernel_packs)->Unit(benchmark::kMicrosecond);
+BENCHMARK(hex8_kernel_fibres)->Unit(benchmark::kMicrosecond);
+BENCHMARK(tet10_kernel_packs)->Unit(benchmark::kMicrosecond);
 
 struct Lumen {
   mesh::TetMesh mesh = meshing::lumen(meshing::Lumen{.radius = 5_mm, .length = 50_mm, .cells = {5, 30, 66}});
