@@ -10,9 +10,9 @@
 #include "tunica/mesh/patch_nodes.hpp"
 #include "tunica/meshing/cut.hpp"
 #include "tunica/meshing/marching_cubes.hpp"
+#include "tunica/meshing/quad_diagonals.hpp"
 #include "tunica/meshing/remesh.hpp"
 #include "tunica/meshing/smooth.hpp"
-#include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/surface_foot.hpp"
 #include "tunica/meshing/tetrahedra.hpp"
 #include "tunica/meshing/vessel_wall.hpp"
@@ -79,7 +79,7 @@ Apart farthest(const mesh::QuadSurface& quads, const mesh::Surface& lumen) {
         fine.nodes.col(node++) = (1 - v) * ((1 - u) * x(0) + u * x(1)) + v * ((1 - u) * x(3) + u * x(2));
       }
   }
-  const auto sheet = meshing::split_quads(fine);
+  const auto sheet = meshing::triangles_of(fine);
   const meshing::FootFinder back(sheet);
   const meshing::FootFinder there(lumen);
   Apart apart;
@@ -91,7 +91,7 @@ Apart farthest(const mesh::QuadSurface& quads, const mesh::Surface& lumen) {
 
 /// Least distance of the outer faces (corners, middles of the sides and of the faces) from the inner ones.
 double thinnest(const meshing::WallResult& result) {
-  const auto sheet = meshing::split_quads(result.inner);
+  const auto sheet = meshing::triangles_of(result.inner);
   const meshing::FootFinder inner(sheet);
   const auto& faces = result.wall.patch("outer").faces;
   double least = 1e9;

@@ -7,7 +7,7 @@
 #include "tunica/mesh/patch_nodes.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/meshing/most_normal.hpp"
-#include "tunica/meshing/split_quads.hpp"
+#include "tunica/meshing/quad_diagonals.hpp"
 #include "tunica/meshing/surface_foot.hpp"
 #include "tunica/meshing/vessel_wall.hpp"
 
@@ -143,7 +143,7 @@ TEST_SUITE("unit") {
     CHECK(result.report.least_share >= 0.75);
     CHECK(result.report.mean_share >= 0.99);
     if (result.report.thinned > 0) CHECK(std::abs(result.report.thinnest[0]) < 3);  // in the groove
-    const auto flanks = meshing::split_quads(sheet);
+    const auto flanks = meshing::triangles_of(sheet);
     const meshing::FootFinder finder(flanks);
     const auto top = [&](Index k) { return Vec3(result.mesh.nodes.col(k + 2 * sheet.node_count())); };
     for (Index k = 0; k < sheet.node_count(); ++k) {

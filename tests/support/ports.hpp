@@ -6,7 +6,7 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/dual_contouring.hpp"
 #include "tunica/meshing/hermite_field.hpp"
-#include "tunica/meshing/split_quads.hpp"
+#include "tunica/meshing/quad_diagonals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ mesh::Surface between_ports(const Level& level, const Ports& ports, const Box& b
       if (std::abs(ports[k].normal.dot(c.point - ports[k].point)) < 1e-8 &&
           c.normal.dot(ports[k].normal) > 0.9999)
         c.region = 1 + static_cast<Index>(k);
-  return meshing::split_quads(meshing::dual_contour(grid, {.hold = -0.5}));
+  return meshing::triangles_of(meshing::dual_contour(grid, {.hold = -0.5}));
 }
 
 }  // namespace tunica::test

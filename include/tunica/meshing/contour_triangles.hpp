@@ -3,9 +3,9 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
-#include "tunica/core/expect.hpp"
 #include "tunica/core/text.hpp"
 #include "tunica/image/image.hpp"
+#include "tunica/image/require_grid.hpp"
 #include "tunica/mesh/measures.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/meshing/contour.hpp"
@@ -35,22 +35,6 @@ struct DualImageOptions {
 };
 
 namespace detail {
-
-template <class T>
-void expect_image(const image::Image<T>& image, [[maybe_unused]] std::span<const std::uint8_t> kept) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto& axis = image.axes[a];
-    if (axis.size() < 2)
-      throw MeshError("no edge of the grid crosses the iso-value: the image has " +
-                      std::to_string(axis.size()) + " sample along axis " + std::string(1, "xyz"[a]) +
-                      ", two are needed");
-    for (std::size_t i = 0; i + 1 < axis.size(); ++i)
-      TUNICA_EXPECT(axis[i] < axis[i + 1], "the coordinates of an axis increase");
-  }
-  TUNICA_EXPECT(image.values.size() == image.axes[0].size() * image.axes[1].size() * image.axes[2].size(),
-                "an image has a value for each node of its grid");
-  TUNICA_EXPECT(kept.empty() || kept.size() == image.values.size(), "the mask has one byte for each voxel");
-}
 
 /// All nodes alike: nothing but the border of the image would bound them.
 inline void expect_crossing(const PaddedBits& bits, double iso) {
@@ -92,7 +76,7 @@ template <class T>
 [[nodiscard]] mesh::QuadSurface dual_contour_quads(const image::Image<T>& image,
                                                    std::span<const std::uint8_t> kept, double iso,
                                                    const DualImageOptions& options = {}) {
-  detail::expect_image(image, kept);
+  image::require_grid(image, kept);
   const detail::PaddedBits bits(SignBits(image, kept, iso),
                                 {image.axes[0].size(), image.axes[1].size(), image.axes[2].size()});
   detail::expect_crossing(bits, iso);

@@ -5,6 +5,7 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/image/image.hpp"
+#include "tunica/image/require_grid.hpp"
 #include "tunica/meshing/contour_triangles.hpp"
 #include "tunica/meshing/cut.hpp"
 #include "tunica/meshing/dual_sweep.hpp"
@@ -38,7 +39,7 @@ template <class T>
                                                    std::span<const Cut> cuts,
                                                    const CutOptions& cut_options = {},
                                                    const DualImageOptions& options = {}) {
-  detail::expect_image(image, kept);
+  image::require_grid(image, kept);
   detail::PaddedBits bits(SignBits(image, kept, iso),
                           {image.axes[0].size(), image.axes[1].size(), image.axes[2].size()});
   detail::expect_crossing(bits, iso);

@@ -9,7 +9,7 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/quality.hpp"
 #include "tunica/meshing/extrude_field.hpp"
-#include "tunica/meshing/split_quads.hpp"
+#include "tunica/meshing/quad_diagonals.hpp"
 #include "tunica/meshing/surface_foot.hpp"
 
 #include <algorithm>
@@ -75,7 +75,7 @@ inline void add_extruded_patches(mesh::HexMesh& mesh, const mesh::QuadSurface& s
 /// asked for there.
 template <class Field>
 [[nodiscard]] double least_between(const mesh::QuadSurface& sheet, const Field& field) {
-  const mesh::Surface triangles = split_quads(sheet);
+  const mesh::Surface triangles = triangles_of(sheet);
   const TriangleFinder finder(triangles);
   double least = 1;
   for (Index q = 0; q < sheet.cell_count(); ++q) {

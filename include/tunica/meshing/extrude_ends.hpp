@@ -7,7 +7,7 @@
 #include "tunica/mesh/adjacency.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/quality.hpp"
-#include "tunica/meshing/split_quads.hpp"
+#include "tunica/meshing/quad_diagonals.hpp"
 #include "tunica/meshing/surface_foot.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class ColumnEnds {
         offset_(offset),
         normal_(offset),
         slid_(offset.size(), 0),
-        triangles_(split_quads(columns.sheet)),
+        triangles_(triangles_of(columns.sheet)),
         finder_(triangles_) {}
 
   void settle() {

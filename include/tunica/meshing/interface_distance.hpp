@@ -4,8 +4,8 @@
 
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
+#include "tunica/meshing/quad_diagonals.hpp"
 #include "tunica/meshing/quad_face.hpp"
-#include "tunica/meshing/split_quads.hpp"
 #include "tunica/meshing/surface_foot.hpp"
 
 #include <algorithm>
@@ -105,7 +105,7 @@ template <FootSurface S>
   }
   if (node > 0) d.quads_rms = std::sqrt(d.quads_rms / node), d.quads_beyond /= node;
 
-  const mesh::Surface triangles = split_quads(fine);
+  const mesh::Surface triangles = triangles_of(fine);
   const TriangleFinder back(triangles);
   for (const Vec3& x : wall) {
     const double away = back.distance(x);

@@ -7,6 +7,7 @@
 #include "tunica/core/parallel.hpp"
 #include "tunica/core/text.hpp"
 #include "tunica/image/image.hpp"
+#include "tunica/image/require_grid.hpp"
 #include "tunica/mesh/measures.hpp"
 #include "tunica/meshing/contour.hpp"
 #include "tunica/meshing/cut_numbers.hpp"
@@ -210,18 +211,7 @@ class MarchingSweep {
 template <class T>
 [[nodiscard]] Contour marching_cubes(const image::Image<T>& image, std::span<const std::uint8_t> kept,
                                      double iso, const MarchingCubesOptions& options = {}) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto& axis = image.axes[a];
-    if (axis.size() < 2)
-      throw MeshError("no edge of the grid crosses the iso-value: the image has " +
-                      std::to_string(axis.size()) + " sample along axis " + std::string(1, "xyz"[a]) +
-                      ", two are needed");
-    for (std::size_t i = 0; i + 1 < axis.size(); ++i)
-      TUNICA_EXPECT(axis[i] < axis[i + 1], "the coordinates of an axis increase");
-  }
-  TUNICA_EXPECT(image.values.size() == image.axes[0].size() * image.axes[1].size() * image.axes[2].size(),
-                "an image has a value for each node of its grid");
-  TUNICA_EXPECT(kept.empty() || kept.size() == image.values.size(), "the mask has one byte for each voxel");
+  image::require_grid(image, kept);
   return detail::MarchingSweep<T>(image, kept, iso, options.border).run();
 }
 
