@@ -33,6 +33,7 @@ struct Goal {
 [[nodiscard]] std::vector<Goal> solid_goals();
 [[nodiscard]] std::vector<Goal> fluid_goals();
 [[nodiscard]] std::vector<Goal> la_goals();
+[[nodiscard]] std::vector<Goal> assembly_goals();
 [[nodiscard]] std::vector<Goal> kernel_goals();
 
 }  // namespace tunica::bench

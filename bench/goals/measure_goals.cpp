@@ -45,7 +45,7 @@ void run(const char* path) {
   std::printf("%-40s| %-60s| %-56s| %-46s| %s\n", "goal", "measured", "target", "ratio to the peer",
               "(outcome)");
   for (const auto& lines : {contour_goals, dual_goals, smoothing_goals, filling_goals, hex_goals, solid_goals,
-                            fluid_goals, la_goals, kernel_goals})
+                            fluid_goals, la_goals, assembly_goals, kernel_goals})
     for (const Goal& g : lines()) {
       std::printf("%-40s| %-60s| %-56s| %-46s| %s\n", g.name.c_str(), g.measured.c_str(), g.target.c_str(),
                   g.ratio.c_str(), name(g.outcome).data());
