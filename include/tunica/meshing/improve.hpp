@@ -126,7 +126,7 @@ class Improve {
 
   bool repair(Index t, int number) {
     const Quad n = m_.c.nodes(t);
-    if (at(t) >= in_vain_.size()) in_vain_.resize(at(m_.c.size()), 0);
+    if (at(t) >= in_vain_.size()) in_vain_.resize(at(m_.c.size()));
     const bool again = in_vain_[at(t)] > 0 && std::none_of(n.begin(), n.end(), [&](Index v) {
                          return m_.changed(v, in_vain_[at(t)]);
                        });

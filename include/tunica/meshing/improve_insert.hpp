@@ -67,7 +67,7 @@ class ImproveInsert {
   /// factor.
   bool take_out(Index v, double factor) {
     TetComplex& c = m_.c;
-    if (at(v) >= in_vain_.size()) in_vain_.resize(c.points.size(), 0);
+    if (at(v) >= in_vain_.size()) in_vain_.resize(c.points.size());
     if (in_vain_[at(v)] > 0 && !m_.changed(v, in_vain_[at(v)])) return false;
     c.star(v, cavity_);
     const double before = m_.worst(cavity_);

@@ -22,7 +22,7 @@ class ImproveMesh {
   std::vector<char> held;  // 1: a node that does not move either; may be shorter than the nodes are many
 
   ImproveMesh(TetComplex& complex, Index fixed_nodes) : c(complex), fixed(fixed_nodes) {
-    quality_.resize(static_cast<std::size_t>(c.size()), -1);
+    quality_.assign(static_cast<std::size_t>(c.size()), -1.0);
     for (Index t = 0; t < c.size(); ++t)
       if (c.alive(t)) update(t);
   }
@@ -56,14 +56,14 @@ class ImproveMesh {
   /// TetComplex::replace with the qualities of the new ones.
   void replace(std::span<const Index> old, std::span<const Quad> fresh) {
     const auto& created = c.replace(old, fresh, open_);
-    quality_.resize(static_cast<std::size_t>(c.size()), -1);
+    quality_.resize(static_cast<std::size_t>(c.size()));
     for (const Index t : created) update(t);
   }
 
  private:
   void touch(Index node) {
     const auto n = static_cast<std::size_t>(node);
-    if (n >= changed_.size()) changed_.resize(c.points.size(), 0);
+    if (n >= changed_.size()) changed_.resize(c.points.size());
     changed_[n] = now_;
   }
 

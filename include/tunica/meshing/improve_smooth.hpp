@@ -75,7 +75,7 @@ class ImproveSmooth {
     if (!m_.free(node)) return false;
     TetComplex& c = m_.c;
     const auto i_node = static_cast<std::size_t>(node);
-    if (i_node >= in_vain_.size()) in_vain_.resize(c.points.size(), 0);
+    if (i_node >= in_vain_.size()) in_vain_.resize(c.points.size());
     if (in_vain_[i_node] > 0 && !m_.changed(node, in_vain_[i_node])) return false;
     c.star(node, star_);
     const double before = m_.worst(star_);

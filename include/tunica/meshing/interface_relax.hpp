@@ -64,7 +64,8 @@ class InterfaceRelax {
   void find_neighbours() {
     std::vector<std::vector<Index>> plain(s_.nodes.size()), curve(s_.nodes.size());
     for (const InterfaceEdge& e : edges_.edges)
-      for (const auto& [from, to] : {std::pair{e.a, e.b}, std::pair{e.b, e.a}}) {
+      for (const Index from : {e.a, e.b}) {
+        const Index to = e.a + e.b - from;
         plain[static_cast<std::size_t>(from)].push_back(to);
         if (e.junction) curve[static_cast<std::size_t>(from)].push_back(to);
       }

@@ -20,7 +20,7 @@ inline constexpr double orient3d_bound = (7 + 56 * eps) * eps;
 inline constexpr double insphere_bound = (16 + 224 * eps) * eps;
 
 template <class P>
-[[nodiscard]] double orient2d_exact(const P& a, const P& b, const P& c) {
+[[nodiscard]] inline double orient2d_exact(const P& a, const P& b, const P& c) {
   const auto bx = difference(b[0], a[0]), by = difference(b[1], a[1]);
   const auto cx = difference(c[0], a[0]), cy = difference(c[1], a[1]);
   return (bx * cy - by * cx).estimate();
@@ -57,7 +57,7 @@ template <class P>
 /// Twice the signed area of (a, b, c): > 0 counter-clockwise; the sign is exact, 0 only if collinear. Points
 /// are whatever has coordinates [0] and [1].
 template <class P = std::array<double, 2>>
-[[nodiscard]] double orient2d(const P& a, const P& b, const P& c) {
+[[nodiscard]] inline double orient2d(const P& a, const P& b, const P& c) {
   const double left = (b[0] - a[0]) * (c[1] - a[1]), right = (b[1] - a[1]) * (c[0] - a[0]);
   const double det = left - right;
   if (std::abs(det) > detail::orient2d_bound * (std::abs(left) + std::abs(right))) return det;

@@ -29,7 +29,7 @@ class TriangleGrid {
 
   void add(Index item, const Box& box) {
     if (static_cast<std::size_t>(item) >= boxes_.size())
-      boxes_.resize(static_cast<std::size_t>(item) + 1), stamp_.resize(static_cast<std::size_t>(item) + 1, 0);
+      boxes_.resize(static_cast<std::size_t>(item) + 1), stamp_.resize(static_cast<std::size_t>(item) + 1);
     boxes_[static_cast<std::size_t>(item)] = box;
     cells_of(box, [&](std::vector<Index>& cell) { cell.push_back(item); });
   }
