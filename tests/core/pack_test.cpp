@@ -69,10 +69,31 @@ bool every(const P& a, Number<P> value) {
 
 }  // namespace
 
-// The packs of this machine, wider ones of several registers, and the fallback of single numbers.
-#define TUNICA_PACKS                                                                                 \
-  Pack<double>, Pack<double, 2>, Pack<double, 4>, Pack<double, 16>, Pack<double, 8, 1>, Pack<float>, \
-      Pack<float, 4>, Pack<float, 8>, Pack<float, 32>, Pack<float, 8, 1>
+// A register of any machine, less and more, and the fallback of single numbers.
+using Doubles2 = Pack<double, 2>;
+using Doubles4 = Pack<double, 4>;
+using Doubles8 = Pack<double, 8>;
+using Doubles16 = Pack<double, 16>;
+using PlainDoubles8 = Pack<double, 8, 1>;
+using Floats4 = Pack<float, 4>;
+using Floats8 = Pack<float, 8>;
+using Floats16 = Pack<float, 16>;
+using Floats32 = Pack<float, 32>;
+using PlainFloats8 = Pack<float, 8, 1>;
+#ifndef TUNICA_PLAIN_PACKS
+TYPE_TO_STRING(PlainDoubles8);
+TYPE_TO_STRING(PlainFloats8);
+#endif
+TYPE_TO_STRING(Doubles2);
+TYPE_TO_STRING(Doubles4);
+TYPE_TO_STRING(Doubles8);
+TYPE_TO_STRING(Doubles16);
+TYPE_TO_STRING(Floats4);
+TYPE_TO_STRING(Floats8);
+TYPE_TO_STRING(Floats16);
+TYPE_TO_STRING(Floats32);
+#define TUNICA_PACKS \
+  Doubles2, Doubles4, Doubles8, Doubles16, PlainDoubles8, Floats4, Floats8, Floats16, Floats32, PlainFloats8
 
 TEST_SUITE("unit") {
   TEST_CASE_TEMPLATE("core: arithmetic of packs is that of their lanes", P, TUNICA_PACKS) {

@@ -59,7 +59,8 @@ struct Functions {
     x = x > B::exp_high ? all(B::exp_high) : x;
     constexpr T log2_e = T(1.44269504088896340736L);
     const V shifted = x * log2_e + B::round, n = shifted - B::round;
-    const V r = (x - n * B::ln2_high) - n * B::ln2_low;
+    const V first = x - n * B::ln2_high, r = first - n * B::ln2_low;
+    const V rest = (first - r) - n * B::ln2_low;  // what rounding took from r
     V even = all(0), odd = all(0);  // of (exp r - 1 - r) / r^2 in r^2: two short chains instead of a long one
     const V r2 = r * r;
     T factor = 1;
@@ -68,7 +69,7 @@ struct Functions {
     for (int k = 1; k <= top; ++k) factor *= T(k), inverse[k] = T(1) / factor;
 #pragma GCC unroll 16
     for (int k = top; k >= 2; --k) (k % 2 ? odd : even) = (k % 2 ? odd : even) * r2 + inverse[k];
-    const V e = T(1) + (r + r2 * (even + r * odd));
+    const V e = T(1) + (r + (rest + r2 * (even + r * odd)));
     // 2^n in two factors: n reaches beyond the exponents of a number, and so may the result
     const I k = bits(shifted) - std::bit_cast<Integer>(B::round);
     constexpr Integer offset = Integer{1} << (B::mantissa - 2);
