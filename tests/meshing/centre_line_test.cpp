@@ -204,6 +204,12 @@ TEST_SUITE("unit") {
     apart.name = "apart", apart.point = Vec3(5, 0, 0);
     ends.push_back(apart);
     CHECK(refusal(two, ends) == "no way leads from the end \"inlet\" to \"apart\" within the surface");
+    for (const double x : {5.0, 1e9, std::nan("")}) {
+      ends.back().point = Vec3(x, 3, 3);
+      CHECK(refusal(tube, ends).find("the end \"apart\" at (") == 0);
+    }
+    ends.back().point = Vec3(0.5, 0, 1.5);
+    CHECK(refusal(tube, ends).empty());
   }
 
   TEST_CASE("meshing: the centre line of a real vessel agrees with one found from its Voronoi diagram") {

@@ -5,6 +5,7 @@
 
 #include "tunica/core/error.hpp"
 #include "tunica/core/text.hpp"
+#include "tunica/mesh/solid_angle.hpp"
 #include "tunica/meshing/centre_curve.hpp"
 #include "tunica/meshing/centre_tree.hpp"
 #include "tunica/meshing/inside_grid.hpp"
@@ -126,12 +127,16 @@ struct GridPaths {
 }  // namespace detail
 
 /// The centre lines from the first end to all others. The surface is closed; flat ends are regions of it
-/// (vessel_ends), blind ends are points within. MeshError with fewer than two ends, or where no way leads.
+/// (vessel_ends), blind ends are points within. MeshError with fewer than two ends, where one is not within
+/// the surface, or where no way leads.
 [[nodiscard]] inline CentreLine centre_line(const mesh::Surface& s, const std::vector<VesselEnd>& ends,
                                             const CentreLineOptions& options = {}) {
   if (ends.size() < 2)
     throw MeshError("a centre line needs two ends or more, flat ends of the vessel or points within; there " +
                     std::string(ends.empty() ? "are none" : "is one"));
+  for (const VesselEnd& e : ends)  // NaN is not within either
+    if (e.region < 0 && !(std::abs(mesh::solid_angle(s, e.point)) > 2 * std::numbers::pi))
+      throw MeshError("the end \"" + e.name + "\" at " + place(e.point) + " is not within the surface");
   const WallDistance wall(s, ends);
   const double radius = detail::smallest_radius(s, ends);
   const double step = options.step > 0 ? options.step : radius / 2;
