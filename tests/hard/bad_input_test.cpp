@@ -13,6 +13,7 @@
 #include "tunica/meshing/repair.hpp"
 #include "tunica/meshing/tetrahedra.hpp"
 #include "tunica/meshing/untangle.hpp"
+#include "tunica/meshing/vessel_wall.hpp"
 
 #include <doctest/doctest.h>
 
@@ -117,6 +118,15 @@ TEST_SUITE("hard") {
       CHECK(file.surface.cell_count() == (full ? 0 : 20));
       CHECK(has(refusal([&] { (void)io::closed_surface("soup.stl", std::move(file)); }),
                 full ? "soup.stl: no facet is left of 22" : "soup.stl: the surface is open"));
+    }
+  }
+
+  TEST_CASE("meshing: a wall without a thickness is refused with its place") {
+    const auto tube = test::tube_surface(16, 12, 3, 1, 4);
+    for (const double t :
+         {0.0, -0.2, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      const meshing::WallOptions<double> options{.thickness = t, .edge = 0.5};
+      CHECK(has(refusal([&] { (void)meshing::vessel_wall(tube, options); }), "a thickness of"));
     }
   }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
-#include "tunica/core/expect.hpp"
 #include "tunica/core/text.hpp"
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/adjacency.hpp"
@@ -43,7 +42,9 @@ class ExtrudeField {
         share_(count(), 1.0) {
     for (Index n = 0; n < sheet.node_count(); ++n) {
       thickness_[at(n)] = thickness_at(options.thickness, node(n));
-      TUNICA_EXPECT(thickness_[at(n)] > 0, "a wall has a positive thickness everywhere");
+      if (!(thickness_[at(n)] > 0 && std::isfinite(thickness_[at(n)])))
+        throw MeshError("the wall would have a thickness of " + seven_digits(thickness_[at(n)]) + " at " +
+                        place(node(n)));
     }
     for (const SheetRim& rim : rims)
       for (const Index n : rim.loop) plane_[at(n)] = rim.normal;
