@@ -203,7 +203,7 @@ TEST_SUITE("unit") {
     const auto fold = test::sharpest_fold(r.surface);
     MESSAGE("aorta tree: sharpest fold ", fold.degrees, " degrees at ", fold.place.transpose());
     CHECK(check(s, r, edge, "aorta tree") > 5);
-    CHECK(fold.degrees > 5);
+    CHECK(fold.degrees > 15);
   }
 
   TEST_CASE("meshing: a surface that crosses itself is not remeshed") {
@@ -240,6 +240,9 @@ TEST_SUITE("unit") {
     for (const double edge : {2.25, 2.0, 1.0}) {  // 1.5 times the largest spacing first
       const auto r = meshing::remesh(cut, {.edge = edge});
       CHECK(check(cut, r, edge, "aorta") >= 15);
+      const auto fold = test::sharpest_fold(r.surface);
+      MESSAGE("edge ", edge, ": sharpest fold ", fold.degrees, " degrees at ", fold.place.transpose());
+      CHECK(fold.degrees > 18);  // no edit makes one of less than 20; restoring the volume hardly moves nodes
       CHECK(r.report.volume_after == doctest::Approx(10154.17).epsilon(0.005));
     }
   }

@@ -75,11 +75,9 @@ template <class Size>
   for (int pass = 0; pass < fits; ++pass) fit(w);
   flip_to_angle(w.edit);
   repair_angles(w);
-  if constexpr (!RemeshState<Size>::constant) {
-    constexpr double poor = 0.26;  // [rad] 15 degrees: worse than a fold
-    w.edit.allow_folds(EditableSurface::five_degrees);
-    for (int pass = 0; pass < repairs; ++pass) repair_angles(w, poor);
-  }
+  constexpr double poor = 0.26;  // [rad] 15 degrees: worse than a fold
+  w.edit.allow_folds(EditableSurface::five_degrees);
+  for (int pass = 0; pass < repairs; ++pass) repair_angles(w, poor);
   mesh::Surface r = w.edit.surface();  // labelled by facets: flat ones stay flat, also without regions
   r.region_names.resize(w.facets.region.size());
   restore(w, source, r);

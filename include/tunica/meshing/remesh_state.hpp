@@ -20,10 +20,6 @@ template <SizeField Size>
 struct RemeshState {
   static constexpr bool constant = std::same_as<Size, ConstantSize>;
 
-  /// Even edges may fold bumps of a vessel that should go; with shorter ones where those are they need not.
-  static constexpr double sharpest =
-      constant ? EditableSurface::five_degrees : EditableSurface::twenty_degrees;
-
   Size size;
   Facets facets;
   SurfaceTarget target;
@@ -36,7 +32,7 @@ struct RemeshState {
       : size(std::move(target_size)),
         facets(meshing::facets(s, sharp_angle)),
         target(s, facets),
-        edit(s, facets, typical, sharpest) {}
+        edit(s, facets, typical, EditableSurface::twenty_degrees) {}
   RemeshState(const mesh::Surface& s, ConstantSize constant_size, double sharp_angle)
       : RemeshState(s, constant_size, sharp_angle, constant_size.edge) {}
   RemeshState(const RemeshState&) = delete;
