@@ -19,6 +19,7 @@ file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/tunica
 set(zlib_headers ${headers})
 list(FILTER zlib_headers INCLUDE REGEX "/io/zlib[a-z_]*\\.hpp$")
 list(REMOVE_ITEM headers ${zlib_headers})
+list(FILTER headers EXCLUDE REGEX "/la/(cholmod|hypre|petsc)\\.hpp$")
 
 tunica_add_component(tunica ${headers})
 target_link_libraries(tunica INTERFACE Eigen3::Eigen Threads::Threads)
@@ -27,3 +28,4 @@ if(ZLIB_FOUND AND zlib_headers)
   tunica_add_component(zlib ${zlib_headers})
   target_link_libraries(tunica_zlib INTERFACE tunica ZLIB::ZLIB)
 endif()
+include(${CMAKE_CURRENT_LIST_DIR}/solvers.cmake)

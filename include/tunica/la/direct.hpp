@@ -25,8 +25,9 @@ class Direct {
   /// `diverged` for a zero pivot or a NaN.
   SolveReport factorise(const SparseMatrix& A) {
     A_ = A;
-    factor_->factorize(A);
-    usable_ = factor_->info() == Eigen::Success;
+    usable_ = std::isfinite(A.coeffs().sum());
+    if (usable_) factor_->factorize(A);
+    usable_ = usable_ && factor_->info() == Eigen::Success;
     return {usable_ ? Status::converged : Status::diverged, 0, 0};
   }
 
