@@ -2,25 +2,22 @@
 // A meshed hyperelastic body: its internal, inertial and pressure forces and their tangent.
 #pragma once
 
-#include "tunica/core/error.hpp"
 #include "tunica/core/expect.hpp"
-#include "tunica/fem/assembly.hpp"
-#include "tunica/la/linear_solver.hpp"
+#include "tunica/la/direct.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/patch_nodes.hpp"
-#include "tunica/solid/cell_laws.hpp"
-#include "tunica/solid/cell_mass.hpp"
-#include "tunica/solid/mean_dilatation.hpp"
+#include "tunica/solid/body_mass.hpp"
+#include "tunica/solid/formulation.hpp"
+#include "tunica/solid/interior.hpp"
+#include "tunica/solid/mixed_interior.hpp"
 #include "tunica/solid/pressure_load.hpp"
 #include "tunica/solid/robin.hpp"
+#include "tunica/solid/tangent_matrix.hpp"
 
 #include <Eigen/Core>
 
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace tunica::solid {
@@ -28,49 +25,77 @@ namespace tunica::solid {
 /// A component of the displacement.
 enum class Axis { x, y, z };
 
-/// Unknown i of node a is number 3 a + i in every vector; vectors have 3 * nodes entries.
-/// All sums run in an order that the mesh alone fixes: the same bits on any number of threads.
-template <mesh::Cell C, class Material>
+namespace detail {
+/// True, or it does not compile, in one sentence.
+template <class Law>
+inline constexpr bool law_is_complete = [] {
+  if constexpr (requires(const Law& law) { law.isochoric, law.volumetric; }) {
+    static_assert(IsochoricEnergy<PointLaw<Law>> || Material<PointLaw<Law>>,
+                  "the isochoric law needs `reads` and energy(invariants)");
+    static_assert(VolumetricEnergy<decltype(Law::volumetric)>,
+                  "the volumetric law needs energy(J), slope(J) and curvature(J)");
+  } else {
+    static_assert(Material<Law>, "a material gives energy(F), stress(F) or response(F) [Pa] of any scalar");
+  }
+  return true;
+}();
+
+template <mesh::Cell C, class Law, class Locking>
+struct InteriorOf {
+  using type = Interior<C, Law, Locking>;
+};
+template <mesh::Cell C, class Law>
+struct InteriorOf<C, Law, NodalPressure> {
+  static_assert(C::vtk_type == mesh::Tet4::vtk_type, "nodal pressures are those of linear tetrahedra");
+  using type = MixedInterior<Law>;
+};
+}  // namespace detail
+
+/// Unknown i of node a is number 3 a + i in every vector; vectors have unknowns() entries: 3 * nodes, and
+/// with NodalPressure one more for each node at the end. `Given` is a material, or one with a formulation:
+/// with<FBar>(law). All sums run in an order that the mesh alone fixes: the same bits on any number of
+/// threads.
+template <mesh::Cell C, class Given>
 class Body {
   static_assert(C::dim == 3, "a solid body is made of cells in three dimensions");
-  static_assert(IsochoricEnergy<decltype(Material::isochoric)>,
-                "the isochoric law needs `reads` and energy(invariants)");
-  static_assert(VolumetricEnergy<decltype(Material::volumetric)>,
-                "the volumetric law needs energy(J), slope(J) and curvature(J)");
 
  public:
-  using Element = MeanDilatation<C, DefaultRule<C>>;
+  using Form = Formulation<std::remove_const_t<Given>>;
+  using Law = typename Form::Law;
+  static_assert(detail::law_is_complete<Law>);
+  using Inside = typename detail::InteriorOf<C, Law, typename Form::Locking>::type;
+  using Element = typename Inside::Single;
+  using Laws = typename Inside::Laws;
   using Patch = mesh::Patch<typename C::Face>;
-  using Nodal = typename Element::template Nodal<double>;
+  using Nodal = Eigen::Matrix<double, 3, C::nodes>;
+  static constexpr int per_node = Inside::per_node;
+  /// Whether the tangent of the cells is; that of follower pressures is not.
+  static constexpr bool symmetric = Inside::symmetric;
 
   /// Nodes in [m], density in [kg/m3]. MeshError names the first cell that is inverted as it is given.
-  Body(const mesh::Mesh<C, 3>& mesh, const Material& material, double density, Mass mass)
+  Body(const mesh::Mesh<C, 3>& mesh, const Given& material, double density, Mass mass)
       : mesh_(mesh),
-        laws_(material, mesh_.region, mesh_.cell_count()),
-        assembly_(mesh_),
-        fixed_(static_cast<std::size_t>(3 * mesh_.node_count()), 0),
-        cells_(static_cast<std::size_t>(mesh_.cell_count())) {
-    element_mass_.reserve(static_cast<std::size_t>(mesh_.cell_count()));
-    for (Index e = 0; e < mesh_.cell_count(); ++e)
-      element_mass_.push_back(cell_mass<C>(e, reference(e), density, mass));
-  }
+        inside_(mesh_, Form::law(material)),
+        tangent_(inside_.assembly().matrix()),
+        mass_(mesh_, tangent_.blocks(), density, mass),
+        fixed_(static_cast<std::size_t>(unknowns()), 0) {}
 
   [[nodiscard]] const mesh::Mesh<C, 3>& mesh() const { return mesh_; }
+  [[nodiscard]] const Inside& inside() const { return inside_; }
   /// The laws, what they read at the points of the cells, and a stored deformation.
-  using Laws = CellLaws<std::remove_const_t<Material>, Element::points>;
-  [[nodiscard]] const Laws& laws() const { return laws_; }
-  [[nodiscard]] Laws& laws() { return laws_; }
-  [[nodiscard]] const Material& material(Index cell) const { return laws_.material(cell); }
-  [[nodiscard]] auto data(Index cell) const { return laws_.data(cell); }
+  [[nodiscard]] const Laws& laws() const { return inside_.laws(); }
+  [[nodiscard]] Laws& laws() { return inside_.laws(); }
+  [[nodiscard]] const Law& material(Index cell) const { return laws().material(cell); }
+  [[nodiscard]] auto data(Index cell) const { return laws().data(cell); }
   /// field(cell, x) at every point x of the quadrature [m], for laws that read data there (fibres).
   template <class Field>
   void point_field(const Field& field) {
     for (Index e = 0; e < mesh_.cell_count(); ++e)
       for (std::size_t q = 0; q < Element::points; ++q)
-        laws_.point_data(e, q, field(e, Element::position(reference(e), q)));
+        laws().point_data(e, q, field(e, Element::position(reference(e), q)));
   }
-  [[nodiscard]] Index unknowns() const { return 3 * mesh_.node_count(); }
-  [[nodiscard]] la::SparseMatrix pattern() const { return assembly_.matrix(); }
+  [[nodiscard]] Index unknowns() const { return per_node * mesh_.node_count(); }
+  [[nodiscard]] la::SparseMatrix pattern() const { return tangent_.pattern(); }
 
   void fix(Index node, Axis axis) {
     TUNICA_EXPECT(node >= 0 && node < mesh_.node_count(), "a node of the mesh");
@@ -100,51 +125,19 @@ class Body {
   /// the pressures predicted along that step in place of U'(theta).
   [[nodiscard]] bool internal_forces(const Eigen::VectorXd& u, double step, Eigen::VectorXd& f,
                                      Eigen::VectorXd& f_predicted) {
-    f.setZero(unknowns());
-    f_predicted.setZero(unknowns());
-    assembly_.for_each_cell([&](Index e) {
-      const auto element = Element::forces(material(e), reference(e), gather(e, u), data(e));
-      CellState& cell = cells_[static_cast<std::size_t>(e)];
-      cell.smallest_J = element.smallest_J;
-      cell.volume_slope = element.volume_slope;
-      cell.bulk_per_volume = element.bulk / element.volume;
-      cell.p = element.p;
-      // theta is known to a few roundings only, and the pressure to kappa times as much.
-      cell.rounding =
-          roundings * std::numeric_limits<double>::epsilon() * element.bulk * element.volume_slope.norm();
-      cell.predicted = step < 0 ? element.p : cell.start + step * (cell.target - cell.start);
-      assembly_.add(e, element.force, f);
-      assembly_.add(e, (element.force + (cell.predicted - element.p) * element.volume_slope).eval(),
-                    f_predicted);
-    });
-    inverted_cell_ = -1;
-    rounding_ = 0;
-    for (const CellState& cell : cells_) rounding_ += cell.rounding * cell.rounding;
-    rounding_ = std::sqrt(rounding_);
-    for (Index e = mesh_.cell_count() - 1; e >= 0; --e)
-      if (!(cells_[static_cast<std::size_t>(e)].smallest_J > 0)) inverted_cell_ = e;
-    return inverted_cell_ < 0;
+    return inside_.forces(u, step, f, f_predicted);
   }
   /// Size of the part of the last internal forces that is rounding: no residual gets below it [N].
-  [[nodiscard]] double rounding() const { return rounding_; }
+  [[nodiscard]] double rounding() const { return inside_.rounding(); }
   /// A step du leaves the u of the last internal_forces(): the pressures go from the ones predicted so
   /// far to U'(theta) + U'' dv.du/V.
-  void direction(const Eigen::VectorXd& du) {
-    assembly_.for_each_cell([&](Index e) {
-      CellState& cell = cells_[static_cast<std::size_t>(e)];
-      cell.start = cell.predicted;
-      cell.target = cell.p + cell.bulk_per_volume * cell.volume_slope.dot(gather(e, du).reshaped());
-    });
-  }
+  void direction(const Eigen::VectorXd& du) { inside_.direction(du); }
   /// The first cell with J <= 0 in the last internal_forces(), -1 if there was none.
-  [[nodiscard]] Index inverted_cell() const { return inverted_cell_; }
+  [[nodiscard]] Index inverted_cell() const { return inside_.inverted_cell(); }
 
   /// f += factor * M a [N].
   void add_inertia(const Eigen::VectorXd& a, double factor, Eigen::VectorXd& f) const {
-    assembly_.for_each_cell([&](Index e) {
-      const Nodal ma = factor * gather(e, a) * element_mass_[static_cast<std::size_t>(e)];
-      assembly_.add(e, ma.reshaped(), f);
-    });
+    mass_.add_forces(tangent_.blocks(), a, factor, f);
   }
 
   /// f += the forces of the pressures p [Pa], one a patch, on the surface displaced by u.
@@ -154,7 +147,7 @@ class Body {
       if (value == 0) continue;
       for (Index face = 0; face < pressures_[k].face_count(); ++face) {
         const Index e = pressures_[k].cell(face);
-        assembly_.add(e, (value * pressures_[k].unit_force(face, reference(e) + gather(e, u))).eval(), f);
+        add_vector(e, value * pressures_[k].unit_force(face, reference(e) + gather(e, u)), f);
       }
     }
   }
@@ -173,7 +166,7 @@ class Body {
       const Index e = patch.cell(face);
       const auto cone = patch.cone(face, reference(e) + gather(e, u), apex);
       cavity.volume -= cone.volume;
-      assembly_.add(e, (-cone.slope).eval(), cavity.slope);
+      add_vector(e, -cone.slope, cavity.slope);
     }
     return cavity;
   }
@@ -196,44 +189,31 @@ class Body {
   /// unknowns get a positive diagonal and zeros elsewhere.
   void tangent(const Eigen::VectorXd& u, const Eigen::VectorXd& p, const TangentParts& parts,
                la::SparseMatrix& A) const {
-    assembly_.clear(A);
-    assembly_.for_each_cell([&](Index e) {
-      auto K = Element::tangent(material(e), reference(e), gather(e, u),
-                                cells_[static_cast<std::size_t>(e)].predicted, data(e))
-                   .stiffness;
-      K *= parts.stiffness;
-      if (parts.mass != 0) {
-        const auto& m = element_mass_[static_cast<std::size_t>(e)];
-        for (int b = 0; b < C::nodes; ++b)
-          for (int a = 0; a < C::nodes; ++a)
-            for (int i = 0; i < 3; ++i) K(3 * a + i, 3 * b + i) += parts.mass * m(a, b);
-      }
-      const double diagonal = K.diagonal().cwiseAbs().maxCoeff();
-      scatter(e, K, diagonal, A);
-    });
+    la::BlockMatrix<per_node>& K = tangent_.blocks();
+    K.set_zero();
+    if (parts.stiffness != 0) inside_.add_tangent(u, parts.stiffness, K);
+    if (parts.mass != 0) mass_.add_to(parts.mass, K);
+    bool loaded = false;
     for (std::size_t k = 0; k < pressures_.size(); ++k) {
       const double value = p[static_cast<Eigen::Index>(k)];
       if (value == 0) continue;
+      loaded = true;
       for (Index face = 0; face < pressures_[k].face_count(); ++face) {
         const Index e = pressures_[k].cell(face);
-        auto K = pressures_[k].unit_stiffness(face, reference(e) + gather(e, u));
-        if (parts.symmetric_load) K = (0.5 * (K + K.transpose())).eval();
-        K *= -value * parts.stiffness;
-        scatter(e, K, 0, A);
+        auto unit = pressures_[k].unit_stiffness(face, reference(e) + gather(e, u));
+        if (parts.symmetric_load) unit = (0.5 * (unit + unit.transpose())).eval();
+        add_matrix(e, -value * parts.stiffness * unit, K);
       }
     }
     for (const auto& support : supports_)
       support.for_each_stiffness(parts.stiffness, parts.damping,
-                                 [&](Index e, ElementMatrix& K) { scatter(e, K, 0, A); });
+                                 [&](Index e, const ElementMatrix& S) { add_matrix(e, S, K); });
+    tangent_.constrain(fixed_);
+    tangent_.columns(symmetric && (!loaded || parts.symmetric_load), A);
   }
 
   /// Strain energy [J] at u, that of the springs, and kinetic energy at velocity v.
-  [[nodiscard]] double strain_energy(const Eigen::VectorXd& u) const {
-    double sum = 0;
-    for (Index e = 0; e < mesh_.cell_count(); ++e)
-      sum += Element::energy(material(e), reference(e), gather(e, u), data(e));
-    return sum;
-  }
+  [[nodiscard]] double strain_energy(const Eigen::VectorXd& u) const { return inside_.energy(u); }
   [[nodiscard]] double spring_energy(const Eigen::VectorXd& u) const {
     Eigen::VectorXd f = Eigen::VectorXd::Zero(unknowns());
     add_support_forces(u, Eigen::VectorXd::Zero(unknowns()), f);
@@ -245,6 +225,10 @@ class Body {
     return 0.5 * v.dot(momentum);
   }
 
+  /// The displacements (or velocities) of a vector, 3 x nodes.
+  [[nodiscard]] Points<3> at_nodes(const Eigen::VectorXd& u) const {
+    return u.head(3 * mesh_.node_count()).reshaped(3, mesh_.node_count());
+  }
   [[nodiscard]] Nodal reference(Index e) const {
     Nodal X;
     for (int a = 0; a < C::nodes; ++a) X.col(a) = mesh_.nodes.col(mesh_.cells(a, e));
@@ -257,37 +241,36 @@ class Body {
   }
 
  private:
-  static constexpr double roundings = 2;  // measured: residuals stall at 0.2 to 0.6 of this bound
-  struct CellState {
-    double smallest_J = 1, rounding = 0;
-    double p = 0, bulk_per_volume = 0;  // U'(theta) and U''/V at the last forces
-    Eigen::Matrix<double, 3 * C::nodes, 1> volume_slope = Eigen::Matrix<double, 3 * C::nodes, 1>::Zero();
-    double start = 0, target = 0, predicted = 0;  // pressures along a step of Newton [Pa]
-  };
-  using NodePairs = Eigen::Matrix<double, C::nodes, C::nodes>;
   using ElementMatrix = Eigen::Matrix<double, 3 * C::nodes, 3 * C::nodes>;
 
-  void scatter(Index e, ElementMatrix& K, double diagonal, la::SparseMatrix& A) const {
+  template <class Vector>
+  void add_vector(Index e, const Vector& fe, Eigen::VectorXd& f) const {
+    const Eigen::Matrix<double, 3 * C::nodes, 1> values = fe;
     for (int a = 0; a < C::nodes; ++a)
-      for (int i = 0; i < 3; ++i)
-        if (fixed(3 * mesh_.cells(a, e) + i)) {
-          K.row(3 * a + i).setZero();
-          K.col(3 * a + i).setZero();
-          K(3 * a + i, 3 * a + i) = diagonal;
-        }
-    assembly_.add(e, K, A);
+      f.segment<3>(3 * mesh_.cells(a, e)) += values.template segment<3>(3 * a);
+  }
+  template <class Matrix>
+  void add_matrix(Index e, const Matrix& Ke, la::BlockMatrix<per_node>& K) const {
+    const ElementMatrix values = Ke;
+    for (int a = 0; a < C::nodes; ++a)
+      for (int b = 0; b < C::nodes; ++b) {
+        double* const block = K.block(K.find(mesh_.cells(a, e), mesh_.cells(b, e)));
+        for (int i = 0; i < 3; ++i)
+          for (int k = 0; k < 3; ++k) block[per_node * i + k] += values(3 * a + i, 3 * b + k);
+      }
   }
 
   mesh::Mesh<C, 3> mesh_;
-  Laws laws_;
-  fem::Assembly<C, 3> assembly_;
+  Inside inside_;
+  mutable TangentMatrix<per_node> tangent_;  // scratch of tangent()
+  BodyMass<C, per_node> mass_;
   std::vector<char> fixed_;
   std::vector<PressureLoad<C>> pressures_;
   std::vector<RobinSupport<C>> supports_;
-  std::vector<NodePairs> element_mass_;  // of one component [kg]
-  std::vector<CellState> cells_;
-  Index inverted_cell_ = -1;
-  double rounding_ = 0;
 };
+
+/// LDL^T where the tangent is symmetric.
+template <mesh::Cell C, class Material>
+using DefaultSolver = std::conditional_t<Body<C, Material>::symmetric, la::Ldlt, la::Lu>;
 
 }  // namespace tunica::solid

@@ -5,6 +5,7 @@
 #include "tunica/core/expect.hpp"
 #include "tunica/core/types.hpp"
 #include "tunica/solid/cell_data.hpp"
+#include "tunica/solid/formulation.hpp"
 
 #include <Eigen/Core>
 
@@ -18,7 +19,7 @@ namespace tunica::solid {
 template <class Material, int Points>
 class CellLaws {
  public:
-  using Law = decltype(Material::isochoric);
+  using Law = PointLaw<Material>;
   using PointData = PointOf<Law, double>;
 
   CellLaws(const Material& material, std::vector<Index> region, Index cell_count)

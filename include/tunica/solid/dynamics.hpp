@@ -23,8 +23,11 @@ namespace tunica::solid {
 ///   wall.fix(mesh.patch("ends"));  wall.interface(mesh.patch("inner"));
 ///   wall.save();                                     // t^n
 ///   for (...) { wall.restore(); wall.load(f); if (!wall.step(dt)) ...; wall.displacement(); }
-template <mesh::Cell C, class Material, la::LinearSolver Solver = la::Ldlt>
+template <mesh::Cell C, class Material, la::LinearSolver Solver = DefaultSolver<C, Material>>
 class Dynamics {
+  static_assert(Body<C, Material>::symmetric || !Solver::symmetric,
+                "this tangent is not symmetric: it wants a solver such as la::Lu");
+
  public:
   using Patch = mesh::Patch<typename C::Face>;
 
@@ -91,8 +94,8 @@ class Dynamics {
   /// Starts at displacement and velocity (3 x nodes, [m], [m/s]) with the present loads; the
   /// acceleration follows from the equation of motion. Then save()s. `diverged` if a cell has J <= 0.
   SolveReport start(const Points<3>& u, const Points<3>& v) {
-    state_.u = u.reshaped();
-    state_.v = v.reshaped();
+    state_.u.head(u.size()) = u.reshaped();
+    state_.v.head(v.size()) = v.reshaped();
     state_.f = load_;
     state_.p = pressure_;
     body_.clear_fixed(state_.v);
@@ -259,9 +262,7 @@ class Dynamics {
     [[nodiscard]] la::SparseMatrix pattern() const { return d.body_.pattern(); }
   };
 
-  [[nodiscard]] Points<3> at_nodes(const Eigen::VectorXd& x) const {
-    return x.reshaped(3, body_.mesh().node_count());
-  }
+  [[nodiscard]] Points<3> at_nodes(const Eigen::VectorXd& x) const { return body_.at_nodes(x); }
   [[nodiscard]] Points<3> at_interface(const Eigen::VectorXd& x) const {
     Points<3> y(3, static_cast<Eigen::Index>(interface_nodes_.size()));
     for (std::size_t k = 0; k < interface_nodes_.size(); ++k)

@@ -22,8 +22,11 @@ namespace tunica::solid {
 ///   Statics wall{mesh, Hyperelastic{Yeoh{...}, Quadratic{...}}};
 ///   wall.fix(mesh.patch("ends"));  wall.pressure(mesh.patch("inner"), 16e3);  auto report = wall.solve();
 /// or step by step: while (!wall.done()) { if (!wall.step()) break;  frames.add(wall.displacement()); }
-template <mesh::Cell C, class Material, la::LinearSolver Solver = la::Ldlt>
+template <mesh::Cell C, class Material, la::LinearSolver Solver = DefaultSolver<C, Material>>
 class Statics {
+  static_assert(Body<C, Material>::symmetric || !Solver::symmetric,
+                "this tangent is not symmetric: it wants a solver such as la::Lu");
+
  public:
   using Patch = mesh::Patch<typename C::Face>;
   using linear_solver = Solver;
@@ -84,7 +87,7 @@ class Statics {
 
   /// Starts from another displacement, 3 x nodes [m].
   void start(const Points<3>& u) {
-    u_ = u.reshaped();
+    u_.head(u.size()) = u.reshaped();
     leave_path();
     u_start_ = u_;
   }
@@ -164,7 +167,7 @@ class Statics {
   }
 
   /// Displacements of all nodes, 3 x nodes [m].
-  [[nodiscard]] Points<3> displacement() const { return u_.reshaped(3, body_.mesh().node_count()); }
+  [[nodiscard]] Points<3> displacement() const { return body_.at_nodes(u_); }
   [[nodiscard]] const Body<C, Material>& body() const { return body_; }
   [[nodiscard]] const Eigen::VectorXd& unknowns() const { return u_; }
   [[nodiscard]] const StaticsOptions& options() const { return options_; }
