@@ -22,6 +22,6 @@ for page in README.md CONTRIBUTING.md docs/*.md; do
   while read -r link; do
     case $link in http*) continue ;; esac
     [ -e "$(dirname "$page")/$link" ] || { echo "$page links to $link, which is not there"; status=1; }
-  done < <(sed '/^```/,/^```$/d' "$page" | grep -oE '\]\([^)#]+\)' | sed 's/^](//; s/)$//')
+  done < <(sed -e '/^```/,/^```$/d' -e '/^    /d' "$page" | grep -oE '\]\([^)#]+\)' | sed 's/^](//; s/)$//')
 done
 exit $status
