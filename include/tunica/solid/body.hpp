@@ -82,6 +82,7 @@ class Body {
 
   [[nodiscard]] const mesh::Mesh<C, 3>& mesh() const { return mesh_; }
   [[nodiscard]] const Inside& inside() const { return inside_; }
+  [[nodiscard]] Inside& inside() { return inside_; }
   /// The laws, what they read at the points of the cells, and a stored deformation.
   [[nodiscard]] const Laws& laws() const { return inside_.laws(); }
   [[nodiscard]] Laws& laws() { return inside_.laws(); }

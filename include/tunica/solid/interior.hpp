@@ -59,9 +59,16 @@ class Interior {
       typename Element::template Forces<S> out;
       Element::forces(law, X, x, data, stored, out);
       for (int l = 0; l < pack.count; ++l) smallest_J_[at(pack.cell[l])] = out.smallest_J[l];
-      assembly_.add(pack, out.f, f);
       if constexpr (mean) {
         keep(pack, out, step);
+        if (augmented_) {
+          const S held = lanes(pack, [&](Index e) { return cells_[at(e)].multiplier; });
+          for (int a = 0; a < nodes; ++a)
+            for (int i = 0; i < 3; ++i) out.f[a][i] += held * out.slope[a][i];
+        }
+      }
+      assembly_.add(pack, out.f, f);
+      if constexpr (mean) {
         S predicted[nodes][3];
         const S change = lanes(pack, [&](Index e) { return cells_[at(e)].predicted - cells_[at(e)].p; });
         for (int a = 0; a < nodes; ++a)
@@ -101,6 +108,24 @@ class Interior {
                           cell.target = cell.p + cell.bulk_per_volume * dv;
                         }
                       });
+  }
+
+  /// The pressures of the last forces() become multipliers of the cells' volumes: equilibrium under the same
+  /// loads is then nearer to v = V (augmented Lagrangian [SIMO91]). Largest |v/V - 1| of the last forces().
+  double augment() requires(std::is_same_v<Locking, MeanVolume>) {
+    double off = 0;
+    for (CellState& cell : cells_) {
+      const double error = std::abs(cell.theta - 1);
+      if (!(error <= off)) off = error;
+      cell.multiplier = cell.p;
+    }
+    augmented_ = true;
+    return off;
+  }
+  /// What augment() left in a cell [Pa].
+  [[nodiscard]] double multiplier(Index cell) const {
+    if constexpr (mean) return cells_[at(cell)].multiplier;
+    return 0;
   }
 
   /// A += scale K(u), with the pressures predicted in the last forces().
@@ -151,9 +176,11 @@ class Interior {
   using Cells = fem::CellPack<width>;
 
   struct CellState {
-    double rounding = 0, p = 0, bulk_per_volume = 0;  // U'(theta) and U''/V at the last forces
-    double start = 0, target = 0, predicted = 0;      // pressures along a step of Newton [Pa]
-    double slope[nodes][3] = {};                      // dv/du [m2]
+    double rounding = 0, p = 0,
+           bulk_per_volume = 0;                   // p = U'(theta) + multiplier and U''/V at the last forces
+    double theta = 1, multiplier = 0;             // v/V; the pressure that augment() left [Pa]
+    double start = 0, target = 0, predicted = 0;  // pressures along a step of Newton [Pa]
+    double slope[nodes][3] = {};                  // dv/du [m2]
   };
 
   static std::size_t at(Index e) { return static_cast<std::size_t>(e); }
@@ -174,7 +201,8 @@ class Interior {
           cell.slope[a][i] = out.slope[a][i][l];
           size += cell.slope[a][i] * cell.slope[a][i];
         }
-      cell.p = out.p[l];
+      cell.theta = out.theta[l];
+      cell.p = out.p[l] + cell.multiplier;
       cell.bulk_per_volume = out.bulk[l] / out.volume[l];
       // theta is known to a few roundings only, and the pressure to kappa times as much.
       cell.rounding = roundings * std::numeric_limits<double>::epsilon() * out.bulk[l] * std::sqrt(size);
@@ -227,6 +255,7 @@ class Interior {
   Laws laws_;
   std::vector<double> smallest_J_;
   std::vector<CellState> cells_;  // of MeanVolume
+  bool augmented_ = false;
   Index inverted_cell_ = -1;
   double rounding_ = 0;
 };

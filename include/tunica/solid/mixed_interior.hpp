@@ -81,6 +81,7 @@ class MixedInterior {
   [[nodiscard]] double rounding() const { return 0; }
   [[nodiscard]] Index inverted_cell() const { return inverted_cell_; }
   void direction(const Eigen::VectorXd&) {}
+  [[nodiscard]] double multiplier(Index) const { return 0; }
 
   /// A += scale d2Pi.
   void add_tangent(const Eigen::VectorXd& x, double scale, la::BlockMatrix<4>& A) const {

@@ -166,6 +166,9 @@ class Statics {
     u_start_.setZero();
   }
 
+  /// The pressures reached hold the volumes of the cells from now on, see Interior; largest |v/V - 1|.
+  double augment() { return body_.inside().augment(); }
+
   /// Displacements of all nodes, 3 x nodes [m].
   [[nodiscard]] Points<3> displacement() const { return body_.at_nodes(u_); }
   [[nodiscard]] const Body<C, Material>& body() const { return body_; }

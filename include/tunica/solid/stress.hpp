@@ -19,8 +19,9 @@ template <mesh::Cell C, class Material>
 [[nodiscard]] StressField cell_stress(const Body<C, Material>& body, const Eigen::VectorXd& u) {
   StressField sigma(6, body.mesh().cell_count());
   for (Index e = 0; e < body.mesh().cell_count(); ++e) {
-    const auto at = Body<C, Material>::Element::stress(body.material(e), body.reference(e), body.gather(e, u),
-                                                       body.data(e));
+    auto at = Body<C, Material>::Element::stress(body.material(e), body.reference(e), body.gather(e, u),
+                                                 body.data(e));
+    at.sigma.template topRows<3>().array() += body.inside().multiplier(e);
     Symmetric<double> sum = Symmetric<double>::Zero();
     double volume = 0;
     for (std::size_t q = 0; q < at.volume.size(); ++q) {
@@ -38,8 +39,9 @@ template <mesh::Cell C, class Material>
   StressField sigma = StressField::Zero(6, body.mesh().node_count());
   Eigen::RowVectorXd weight = Eigen::RowVectorXd::Zero(body.mesh().node_count());
   for (Index e = 0; e < body.mesh().cell_count(); ++e) {
-    const auto at = Body<C, Material>::Element::stress(body.material(e), body.reference(e), body.gather(e, u),
-                                                       body.data(e));
+    auto at = Body<C, Material>::Element::stress(body.material(e), body.reference(e), body.gather(e, u),
+                                                 body.data(e));
+    at.sigma.template topRows<3>().array() += body.inside().multiplier(e);
     for (std::size_t q = 0; q < at.volume.size(); ++q)
       for (const Index n : body.mesh().cells.col(e)) {
         sigma.col(n) += at.volume[q] * at.sigma.col(static_cast<int>(q));

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// The incompressible limit with a moderate bulk modulus: an augmented Lagrangian of the volumes   [SIMO91].
+#pragma once
+
+#include "tunica/solid/statics.hpp"
+
+#include <vector>
+
+namespace tunica::solid {
+
+struct AugmentedOptions {
+  double tolerance = 1e-8;  // on |v/V - 1| of every cell
+  int most = 20;            // augmentations
+};
+
+struct [[nodiscard]] AugmentedReport {
+  SolveReport solve;                  // iterations: of Newton in all; residual: largest |v/V - 1|
+  std::vector<double> volume_errors;  // largest |v/V - 1| after each solve
+
+  [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
+};
+
+/// Solves, makes multipliers of the pressures and solves again until the volumes are kept: each round takes
+/// their error down by about the ratio of the wall's stiffness to kappa, so kappa = 1e3 mu does what 1e9
+/// would, and its tangents are as good as those of 1e3. `wall`: a Statics whose cells keep a mean volume.
+/// `stalled` when the error no longer falls, `max_iterations` after `most` rounds.
+template <class Wall>
+AugmentedReport solve_incompressible(Wall& wall, AugmentedOptions options = {}) {
+  AugmentedReport report;
+  for (int round = 0;; ++round) {
+    const StaticsReport solved = wall.solve();
+    report.solve.iterations += solved.solve.iterations;
+    report.solve.status = solved.solve.status;
+    if (!solved) return report;
+    const double error = wall.augment();
+    const bool falls = report.volume_errors.empty() || error < report.volume_errors.back();
+    report.volume_errors.push_back(error);
+    report.solve.residual = error;
+    if (error <= options.tolerance) return report;
+    if (!falls || round == options.most) {
+      report.solve.status = falls ? Status::max_iterations : Status::stalled;
+      return report;
+    }
+  }
+}
+
+}  // namespace tunica::solid
