@@ -66,6 +66,39 @@ class CellLaws {
     for (std::size_t at = 0; at < given_.size(); ++at) carry_back(at);
   }
 
+  // What follows is for laws with a history: see history.hpp.
+
+  template <class Change>
+  void for_each_material(Change&& change) {
+    for (Material& law : materials_) {
+      if constexpr (Pair<Material>)
+        change(law.isochoric);
+      else
+        change(law);
+    }
+  }
+  /// The part of the law of a cell that reads its points.
+  [[nodiscard]] const Law& point_law(Index cell) const {
+    if constexpr (Pair<Material>)
+      return material(cell).isochoric;
+    else
+      return material(cell);
+  }
+  /// Points are there, at rest where nothing was given.
+  void keep_points() {
+    if (!points_.empty()) return;
+    given_.resize(cell_count_ * Points);
+    points_.resize(cell_count_ * Points);
+  }
+  [[nodiscard]] Eigen::Index point_count() const { return static_cast<Eigen::Index>(points_.size()); }
+  [[nodiscard]] PointData& point(Index cell, std::size_t q) {
+    return points_[static_cast<std::size_t>(cell) * Points + q];
+  }
+  template <class Visit>
+  void for_each_point(Visit&& visit) {
+    for (PointData& point : points_) visit(point);
+  }
+
   [[nodiscard]] CellData<Law> data(Index cell) const {
     const std::size_t first = static_cast<std::size_t>(cell) * Points;
     return {.points = points_.empty() ? nullptr : &points_[first],

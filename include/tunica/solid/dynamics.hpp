@@ -7,6 +7,8 @@
 #include "tunica/la/newton.hpp"
 #include "tunica/la/time_scheme.hpp"
 #include "tunica/solid/dynamics_options.hpp"
+#include "tunica/solid/energy_balance.hpp"
+#include "tunica/solid/history.hpp"
 #include "tunica/solid/stress.hpp"
 
 #include <Eigen/Core>
@@ -107,6 +109,7 @@ class Dynamics {
     body_.add_support_forces(state_.u, state_.v, f);
     external -= f;
     body_.clear_fixed(external);
+    external.tail(external.size() - 3 * body_.mesh().node_count()).setZero();  // pressures have no mass
     la::SparseMatrix M = body_.pattern();
     body_.tangent(state_.u, pressure_, {.stiffness = 0, .mass = 1}, M);
     Solver solver;
@@ -125,12 +128,18 @@ class Dynamics {
     const bool again = restored_ && dt == iterate_dt_;
     if (dt != iterate_dt_) newton_.forget();
     Eigen::VectorXd u = again ? iterate_ : state_.u;
+    if constexpr (has_history<Body<C, Material>>) solid::begin_step(body_.laws(), scheme_.af * dt);  // n+af
     const la::NewtonReport report = newton_.solve(problem, u);
+    if constexpr (has_history<Body<C, Material>>) solid::begin_step(body_.laws(), 0);
     last_ = report;
     inverted_cell_ = report.inadmissible ? body_.inverted_cell() : -1;
     restored_ = false;
     iterate_dt_ = 0;
     if (!report) return report.solve;
+    if constexpr (has_history<Body<C, Material>>) {
+      solid::begin_step(body_.laws(), dt);
+      advance(body_.laws(), body_, u);
+    }
     before_ = {.u = state_.u, .v = state_.v};
     const Eigen::VectorXd v = problem.velocity(u), a = problem.acceleration(u);
     state_.v = v;
@@ -146,6 +155,7 @@ class Dynamics {
   /// Keeps the present state as t^n. The tangent is made anew in the next step, so what follows
   /// depends on the state alone: a restarted run has the bits of the unbroken one.
   void save() {
+    if constexpr (has_history<Body<C, Material>>) state_.history = remembered(body_.laws());
     saved_ = state_;
     restored_ = false;
     newton_.forget();
@@ -153,6 +163,7 @@ class Dynamics {
   /// Back to t^n; the next step(dt) starts its iteration from the displacement reached before.
   void restore() {
     state_ = saved_;
+    if constexpr (has_history<Body<C, Material>>) remember(body_.laws(), state_.history);
     restored_ = iterate_dt_ > 0;
   }
 
@@ -173,19 +184,8 @@ class Dynamics {
 
   /// Of the last step that held.
   [[nodiscard]] EnergyBalance energy_balance() const {
-    EnergyBalance e;
-    if (before_.u.size() == 0) return e;
-    const Eigen::VectorXd du = state_.u - before_.u, none = Eigen::VectorXd::Zero(du.size());
-    const Eigen::VectorXd v_af = before_.v + scheme_.af * (state_.v - before_.v);
-    Eigen::VectorXd damping = none;
-    body_.add_support_forces(none, v_af, damping);
-    e.external = external_.dot(du);
-    e.dashpots = damping.dot(du);
-    e.kinetic = body_.kinetic_energy(state_.v) - body_.kinetic_energy(before_.v);
-    e.strain = body_.strain_energy(state_.u) - body_.strain_energy(before_.u);
-    e.springs = body_.spring_energy(state_.u) - body_.spring_energy(before_.u);
-    e.scheme = e.external - e.kinetic - e.strain - e.springs - e.dashpots;
-    return e;
+    return before_.u.size() == 0 ? EnergyBalance{}
+                                 : solid::energy_balance(body_, before_, state_, external_, scheme_.af);
   }
 
   /// Of the last step: Newton's history; the cell with J <= 0 on which it failed, else -1.
@@ -204,6 +204,11 @@ class Dynamics {
     a("pressure", state_.p);
     a("load", load_);
     a("load_pressure", pressure_);
+    if constexpr (has_history<Body<C, Material>>) {
+      state_.history = remembered(body_.laws());
+      a("history", state_.history);
+      remember(body_.laws(), state_.history);
+    }
     iterate_dt_ = 0;
     save();
   }
@@ -211,6 +216,7 @@ class Dynamics {
  private:
   struct State {
     Eigen::VectorXd u, v, a{}, f{}, p{};  // f, p: loads at t^n
+    Eigen::VectorXd history{};            // of laws that have one
   };
 
   struct Problem {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How dynamics goes along, and where the energy of a step went.
+// How dynamics goes along: scheme, mass, Newton's method.
 #pragma once
 
 #include "tunica/la/newton.hpp"
@@ -15,15 +15,6 @@ struct DynamicsOptions {
   /// the residual down fourfold (a factorisation costs as much as 6 to 15 iterations, measured at
   /// 1,000 and 3,000 cells); refresh_above = 0 is Newton's method proper.
   la::NewtonOptions newton{.refresh_above = 0.25};
-};
-
-/// What became of the energy in one step, all [J]. The scheme's share is what the others leave: numerical
-/// damping, positive where it takes energy away.
-struct EnergyBalance {
-  double external = 0;                          // work of the loads
-  double kinetic = 0, strain = 0, springs = 0;  // what was stored
-  double dashpots = 0;                          // what they took
-  double scheme = 0;                            // external - kinetic - strain - springs - dashpots
 };
 
 }  // namespace tunica::solid
