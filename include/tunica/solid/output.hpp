@@ -58,7 +58,7 @@ void for_each_point(const Body<C, Material>& body, Index e, const Eigen::VectorX
 
 /// J of each cell: its current volume over the one free of stress. u: 3 * nodes [m].
 template <mesh::Cell C, class Material>
-[[nodiscard]] Eigen::VectorXd cell_J(const Body<C, Material>& body, const Eigen::VectorXd& u) {
+[[nodiscard]] Eigen::VectorXd cell_volume_ratio(const Body<C, Material>& body, const Eigen::VectorXd& u) {
   Eigen::VectorXd J(body.mesh().cell_count());
   for (Index e = 0; e < body.mesh().cell_count(); ++e) {
     double free = 0, current = 0;
@@ -112,7 +112,7 @@ template <mesh::Cell C, class Material>
                                      const Points<3>& fibres = Points<3>(3, 0)) {
   WallFields fields;
   fields.cauchy = cell_stress(body, u);
-  fields.J = cell_J(body, u);
+  fields.J = cell_volume_ratio(body, u);
   if (fibres.cols() > 0) fields.fibre_stretch = cell_fibre_stretch(body, u, fibres);
   detail::derive(fields);
   return fields;
@@ -124,7 +124,7 @@ template <mesh::Cell C, class Material>
                                       const Points<3>& fibres = Points<3>(3, 0)) {
   WallFields fields;
   fields.cauchy = recover_at_nodes(body.mesh(), cell_stress(body, u));
-  fields.J = recover_at_nodes(body.mesh(), cell_J(body, u).transpose().eval()).transpose();
+  fields.J = recover_at_nodes(body.mesh(), cell_volume_ratio(body, u).transpose().eval()).transpose();
   if (fibres.cols() > 0)
     fields.fibre_stretch =
         recover_at_nodes(body.mesh(), cell_fibre_stretch(body, u, fibres).transpose().eval()).transpose();
