@@ -209,6 +209,9 @@ class Body {
     for (const auto& support : supports_)
       support.for_each_stiffness(parts.stiffness, parts.damping,
                                  [&](Index e, const ElementMatrix& S) { add_matrix(e, S, K); });
+    if constexpr (per_node == 4)
+      if (parts.stiffness == 0)  // the mass alone does not see pressures: it leaves them as they are
+        for (Index n = 0; n < mesh_.node_count(); ++n) K.block(K.find(n, n))[per_node * per_node - 1] = 1;
     tangent_.constrain(fixed_);
     tangent_.columns(symmetric && (!loaded || parts.symmetric_load), A);
   }

@@ -109,7 +109,6 @@ class Dynamics {
     body_.add_support_forces(state_.u, state_.v, f);
     external -= f;
     body_.clear_fixed(external);
-    external.tail(external.size() - 3 * body_.mesh().node_count()).setZero();  // pressures have no mass
     la::SparseMatrix M = body_.pattern();
     body_.tangent(state_.u, pressure_, {.stiffness = 0, .mass = 1}, M);
     Solver solver;

@@ -101,15 +101,14 @@ class MixedInterior {
     });
   }
 
-  /// Strain energy [J]: int Phi_iso + U(J) dV; the pressures are not asked.
+  /// Pi [J] of MixedTet: where the pressures belong to u it is the strain energy, and no cell pays
+  /// kappa (J - 1)^2/2 for a volume that only the pressures around it are to hold.
   [[nodiscard]] double energy(const Eigen::VectorXd& x) const {
     double sum = 0;
     for (Index e = 0; e < static_cast<Index>(cells_.size()); ++e) {
       const Material& law = laws_.material(e);
-      const Tensor<double> F = cells_[at(e)].deformation(gather(e, x));
-      sum +=
-          cells_[at(e)].volume * (solid::energy(law.isochoric, F, laws_.data(e).template point<double>(0)) +
-                                  law.volumetric.energy(determinant(F)));
+      sum += cells_[at(e)].energy(law.isochoric, laws_.data(e).template point<double>(0), moduli(law),
+                                  gather(e, x));
     }
     return sum;
   }
