@@ -18,8 +18,6 @@ namespace detail {
 
 inline constexpr double least_angle = 0.35;  // [rad] 20 degrees: no collapse makes thinner triangles
 
-inline constexpr double grid_cell = 0.7;  // of the grid that finds triangles nearby, over the edge
-
 struct InterfaceLength {
   double length;
   Index a, b;

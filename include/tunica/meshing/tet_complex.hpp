@@ -23,10 +23,6 @@ using Triple = std::array<Index, 3>;  // nodes of a face
 /// A face of a tetrahedron as one number: 4 * tet + the local node that it is opposite to.
 using Side = Index;
 
-[[nodiscard]] inline std::uint64_t edge_key(Index a, Index b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint64_t>(std::max(a, b));
-}
-
 class TetComplex {
  public:
   std::vector<Vec3> points;
