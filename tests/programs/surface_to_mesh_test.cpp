@@ -5,7 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include <cmath>
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -76,10 +77,18 @@ TEST_SUITE("job") {
             1);  // the ends of the vessel
     CHECK(faults(*checker, folder, "a.vtu --surface a.surface.vtp --tol 0") == "");
     // histograms and worst cells: in the report and as a table
-    for (const std::string part :
-         {"surface: smallest angle [degrees], least ", "surface: mean ratio, least 0",
-          "tetrahedra: smallest dihedral angle [degrees], least 18", "tetrahedra: scaled Jacobian, least 0",
-          "\n  20 to 25 ", "\n  worst 18"})
+    const auto three_digits = [](double value) {
+      std::array<char, 32> digits{};
+      std::snprintf(digits.data(), digits.size(), "%.3g", value);
+      return std::string(digits.data());
+    };
+    const std::string angle = three_digits(figure(report, {"surface", "smallest_angle_degrees"})),
+                      dihedral = three_digits(figure(report, {"fill", "smallest_dihedral_degrees"}));
+    for (const std::string& part : std::vector<std::string>{
+             "surface: smallest angle [degrees], least " + angle + ",", "\n  worst " + angle + " at (",
+             "surface: mean ratio, least 0", "tetrahedra: scaled Jacobian, least 0", "\n  20 to 25 ",
+             "tetrahedra: smallest dihedral angle [degrees], least " + dihedral + ",",
+             "\n  worst " + dihedral + " at ("})
       CHECK_MESSAGE(has(o.out, part), part, " in\n", o.out);
     const std::string tets = report.substr(report.find("\"tetrahedra\": [", report.find("\"quality\"")));
     CHECK(has(tets, "\"figure\": \"smallest dihedral angle\""));
