@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/solid/statics.hpp"
+#include "tunica/la/iterative.hpp"
+#include "tunica/la/multigrid.hpp"
+#include "tunica/la/rigid_modes.hpp"
 #include "tunica/meshing/box.hpp"
 #include "tunica/meshing/tube.hpp"
+#include "tunica/solid/arc_length.hpp"
+#include "tunica/solid/dynamics.hpp"
+#include "tunica/solid/inverse.hpp"
 #include "tunica/solid/laws.hpp"
 #include "tunica/solid/pressure_load.hpp"
 #include "tunica/solid/stress.hpp"
+#include "tunica/solid/volume_control.hpp"
 
 #include <doctest/doctest.h>
 #include <Eigen/Geometry>
@@ -14,6 +21,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 using namespace tunica;
@@ -37,6 +45,55 @@ mesh::HexMesh distorted_box(int n, double by) {
       for (int i = 0; i < 3; ++i) mesh.nodes(i, k) += jitter(random);
   return mesh;
 }
+
+struct Counts {
+  int analysed = 0, factorised = 0, solved = 0;
+};
+
+/// A direct solver that cannot be made from nothing and tells what it has done.
+template <class Direct>
+class Counted {
+ public:
+  static constexpr bool symmetric = Direct::symmetric;
+
+  explicit Counted(Counts& counts) : counts_(&counts) {}
+  void analyse(const la::SparseMatrix& A) {
+    ++counts_->analysed;
+    direct_.analyse(A);
+  }
+  SolveReport factorise(const la::SparseMatrix& A) {
+    ++counts_->factorised;
+    return direct_.factorise(A);
+  }
+  SolveReport solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+    ++counts_->solved;
+    return direct_.solve(b, x);
+  }
+
+ private:
+  Counts* counts_;
+  Direct direct_;
+};
+
+/// A multigrid that tells how often it was made and how often refreshed.
+class CountedMultigrid {
+ public:
+  explicit CountedMultigrid(const Eigen::MatrixXd& modes) { multigrid_.near_null_space(modes); }
+  SolveReport compute(const la::RowMatrix& A) {
+    ++made;
+    return multigrid_.compute(A);
+  }
+  SolveReport refresh(const la::RowMatrix& A) {
+    ++refreshed;
+    return multigrid_.refresh(A);
+  }
+  void apply(const Eigen::VectorXd& r, Eigen::VectorXd& z) const { multigrid_.apply(r, z); }
+
+  int made = 0, refreshed = 0;
+
+ private:
+  la::Multigrid<3, 6> multigrid_;
+};
 
 Eigen::Matrix3d gradient() {
   Eigen::Matrix3d H;
@@ -163,6 +220,79 @@ TEST_SUITE("unit") {
     symmetric.pressure(0, 0);
     REQUIRE(symmetric.solve());
     CHECK(symmetric.displacement().norm() < 1e-8 * a.norm());
+  }
+
+  TEST_CASE("solid: statics takes a multigrid with rigid modes and refreshes it from tangent to tangent") {
+    const auto mesh = meshing::box_hexes(meshing::Block{.cells = {24, 6, 6}, .hi = Vec3(0.04, 0.01, 0.01)});
+    const Hyperelastic law{NeoHooke{.c10 = 100e3}, Quadratic{.kappa = 2e6}};
+    const auto bent = [&](auto wall) {
+      wall.fix(mesh.patch("x0"));
+      for (const Index n :
+           mesh::patch_nodes(mesh.patch("x1"))) {  // prescribed: the start follows the tangent
+        wall.prescribe(n, Axis::y, 0.004);
+        wall.prescribe(n, Axis::x, -0.0004);
+      }
+      wall.pressure(mesh.patch("z1"), 500);
+      const auto report = wall.solve();
+      REQUIRE(report);
+      return std::pair{report, std::move(wall)};
+    };
+    const auto [direct, exact] = bent(Statics{mesh, law});
+    using Cg = la::Cg<CountedMultigrid>;
+    const auto [iterative, wall] = bent(
+        Statics{mesh, law, {}, Cg{{.tolerance = 1e-10}, CountedMultigrid(la::rigid_body_modes(mesh.nodes))}});
+    const Points<3> u = exact.displacement();
+    const auto& multigrid = wall.solver().preconditioner();
+    MESSAGE("off by " << (wall.displacement() - u).norm() / u.norm() << ", hierarchy made " << multigrid.made
+                      << " times and refreshed " << multigrid.refreshed << " times; iterations of Newton "
+                      << iterative.solve.iterations << " and " << direct.solve.iterations);
+    CHECK((wall.displacement() - u).norm() < 1e-9 * u.norm());
+    CHECK(multigrid.made == 1);
+    CHECK(multigrid.refreshed >= iterative.solve.iterations);
+    CHECK(iterative.solve.iterations == direct.solve.iterations);
+    CHECK(u.row(0).cwiseAbs().maxCoeff() > 1e-4);
+  }
+
+  TEST_CASE("solid: whatever solves takes a solver that is handed in and makes no other") {
+    const auto mesh =
+        meshing::tube({.inner_radius = 5e-3, .thickness = 1.5e-3, .length = 8e-3, .cells = {1, 12, 4}});
+    using Symmetric = Counted<la::Ldlt>;
+    Counts counts;
+    Statics wall{mesh, wall_law, {}, Symmetric(counts)};
+    wall.fix(mesh.patch("ends"));
+    for (const Index n : mesh::patch_nodes(mesh.patch("end1"))) wall.prescribe(n, Axis::z, 1e-4);
+    const auto lumen = wall.pressure(mesh.patch("inner"), 5e3);
+    const auto report = wall.solve();
+    REQUIRE(report);
+    CHECK(counts.analysed == 1);
+    CHECK(counts.factorised == report.solve.iterations + report.steps);  // with the start that follows
+
+    ArcLength arc{wall, {.first_step = 1e-6, .largest_step = 1e-4, .smallest_step = 1e-8}};
+    wall.hold();
+    wall.pressure(lumen, 10e3);
+    Counts before = counts;
+    REQUIRE(arc.step());
+    CHECK(counts.factorised > before.factorised);
+    before = counts;
+    VolumeControl filling{wall, lumen};
+    REQUIRE(filling.step(1.02 * filling.volume()));
+    CHECK(counts.factorised > before.factorised);
+
+    Counts moving;
+    Dynamics dynamics{mesh, wall_law, 1100, {}, Symmetric(moving)};
+    dynamics.fix(mesh.patch("ends"));
+    REQUIRE(dynamics.start(wall.displacement(), Points<3>::Zero(3, mesh.node_count())));
+    CHECK(moving.solved == 1);
+    REQUIRE(dynamics.step(1e-4));
+    CHECK(moving.analysed == 2);  // the mass is another matrix
+    Dynamics newmark{mesh, wall_law, 1100, la::Newmark{}, {}, Symmetric(moving)};
+
+    Counts inverse;
+    Statics image{mesh, wall_law};
+    image.fix(mesh.patch("ends"));
+    image.pressure(mesh.patch("inner"), 5e3);
+    REQUIRE(unloaded_shape(image, {}, Counted<la::Lu>(inverse)));
+    CHECK(inverse.factorised > 0);
   }
 
   TEST_CASE("solid: load steps taken one by one are those of solve and loads may change on the way") {

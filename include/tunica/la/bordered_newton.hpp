@@ -33,6 +33,21 @@ concept BorderedProblem = requires(P problem, const Eigen::VectorXd& x, double y
   { problem.pattern() } -> std::convertible_to<SparseMatrix>;
 };
 
+/// The solver of somebody else, with its options and what it keeps: no second one is made.
+template <LinearSolver Solver>
+class Borrowed {
+ public:
+  static constexpr bool symmetric = Solver::symmetric;
+
+  explicit Borrowed(Solver& lent) : lent_(&lent) {}
+  void analyse(const SparseMatrix& A) { lent_->analyse(A); }
+  SolveReport factorise(const SparseMatrix& A) { return lent_->factorise(A); }
+  SolveReport solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) { return lent_->solve(b, x); }
+
+ private:
+  Solver* lent_;
+};
+
 template <LinearSolver Solver>
 class BorderedNewton {
  public:
@@ -73,6 +88,7 @@ class BorderedNewton {
       if (k == options_.max_iterations) return ended(Status::max_iterations, relative);
       if (!factorise(problem, x, y)) return ended(Status::diverged, relative);
       ++report.factorisations;
+      dx_.setZero(x.size());  // the last step is no start for the next
       if (solver_.solve(-r_, dx_).status == Status::diverged ||
           solver_.solve(-problem.slope(x, y), rate_).status == Status::diverged)
         return ended(Status::diverged, relative);

@@ -68,12 +68,21 @@ struct [[nodiscard]] NewtonReport {
   return std::log(e[n - 1] / e[n - 2]) / std::log(e[n - 2] / e[n - 3]);
 }
 
-/// Keeps the solver, its analysis and its factors from one call to the next.
+/// Keeps the solver, its analysis and its factors from one call to the next: what a solver can reuse of
+/// one tangent for the next (an order of elimination, the hierarchy of a multigrid) it reuses.
 template <LinearSolver Solver>
 class Newton {
  public:
   explicit Newton(NewtonOptions options = {}, Solver solver = {})
       : options_(options), solver_(std::move(solver)) {}
+
+  [[nodiscard]] const Solver& solver() const { return solver_; }
+  /// For other matrices of the same pattern: the next tangent is analysed and made anew.
+  [[nodiscard]] Solver& borrow_solver() {
+    analysed_ = false;
+    forget();
+    return solver_;
+  }
 
   /// The tangent is made anew in the next iteration (the matrix changed: a new step length, a new time).
   void forget() { fresh_enough_ = false; }
@@ -104,8 +113,8 @@ class Newton {
         if (!factorise(problem, x)) return ended(Status::diverged, relative);
         ++report.factorisations;
       }
-      if (const auto linear = solver_.solve(-r_, dx_); linear.status == Status::diverged)
-        return ended(Status::diverged, relative);
+      dx_.setZero(x.size());  // the last step is no start for the next
+      if (solver_.solve(-r_, dx_).status == Status::diverged) return ended(Status::diverged, relative);
       ++k;
       problem.direction(dx_);
       const double old_merit = info.merit;
@@ -144,12 +153,23 @@ class Newton {
     return ended(Status::converged, relative);
   }
 
+  /// Solves A(x) dx = b with the tangent made anew at x, which must be where the last residual was taken.
+  template <NonlinearProblem Problem>
+  SolveReport linear(Problem& problem, const Eigen::VectorXd& x, const Eigen::VectorXd& b,
+                     Eigen::VectorXd& dx) {
+    if (!factorise(problem, x)) return {Status::diverged, 0, 0};
+    forget();
+    dx.setZero(x.size());
+    return solver_.solve(b, dx);
+  }
+
  private:
   template <class Problem>
   bool factorise(Problem& problem, const Eigen::VectorXd& x) {
-    if (A_.rows() != x.size()) {
+    if (!analysed_ || A_.rows() != x.size()) {
       A_ = problem.pattern();
       solver_.analyse(A_);
+      analysed_ = true;
     }
     problem.tangent(x, A_);
     fresh_enough_ = solver_.factorise(A_).status == Status::converged;
@@ -160,7 +180,7 @@ class Newton {
   Solver solver_;
   SparseMatrix A_;
   Eigen::VectorXd r_, dx_, trial_;
-  bool fresh_enough_ = false;
+  bool analysed_ = false, fresh_enough_ = false;
 };
 
 }  // namespace tunica::la

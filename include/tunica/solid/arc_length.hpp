@@ -39,7 +39,10 @@ template <class Wall>
 class ArcLength {
  public:
   ArcLength(Wall& wall, const ArcLengthOptions& options)
-      : wall_(wall), options_(options), length_(options.first_step), newton_(wall.options().newton) {
+      : wall_(wall),
+        options_(options),
+        length_(options.first_step),
+        newton_(wall.options().newton, la::Borrowed(wall.borrow_solver())) {
     TUNICA_EXPECT(options.first_step > 0 && options.largest_step >= options.first_step &&
                       options.smallest_step <= options.first_step && options.smallest_step > 0,
                   "steps of an arc are positive, the first between the smallest and the largest");
@@ -117,7 +120,7 @@ class ArcLength {
   Wall& wall_;
   ArcLengthOptions options_;
   double length_;
-  la::BorderedNewton<typename Wall::linear_solver> newton_;
+  la::BorderedNewton<la::Borrowed<typename Wall::linear_solver>> newton_;
   Eigen::VectorXd previous_;  // increment of the last step
 };
 

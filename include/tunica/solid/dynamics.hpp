@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace tunica::solid {
@@ -33,17 +34,17 @@ class Dynamics {
  public:
   using Patch = mesh::Patch<typename C::Face>;
 
-  /// Nodes in [m], density in [kg/m3]; at rest, unloaded.
+  /// Nodes in [m], density in [kg/m3]; at rest, unloaded. A linear solver may be given: see Statics.
   Dynamics(const mesh::Mesh<C, 3>& mesh, const Material& material, double density,
-           DynamicsOptions options = {})
-      : Dynamics(mesh, material, density, options.scheme, options) {}
+           DynamicsOptions options = {}, Solver solver = {})
+      : Dynamics(mesh, material, density, options.scheme, options, std::move(solver)) {}
   /// With another scheme than that of the options: la::Newmark{}.
   template <la::SecondOrderScheme Scheme>
   Dynamics(const mesh::Mesh<C, 3>& mesh, const Material& material, double density, const Scheme& scheme,
-           DynamicsOptions options = {})
+           DynamicsOptions options = {}, Solver solver = {})
       : body_(mesh, material, density, options.mass),
         scheme_(scheme.second_order()),
-        newton_(options.newton) {
+        newton_(options.newton, std::move(solver)) {
     TUNICA_EXPECT(density > 0, "dynamics needs a mass");
     for (auto* v : {&state_.u, &state_.v, &state_.a, &state_.f, &load_})
       *v = Eigen::VectorXd::Zero(body_.unknowns());
@@ -111,7 +112,7 @@ class Dynamics {
     body_.clear_fixed(external);
     la::SparseMatrix M = body_.pattern();
     body_.tangent(state_.u, pressure_, {.stiffness = 0, .mass = 1}, M);
-    Solver solver;
+    Solver& solver = newton_.borrow_solver();
     solver.analyse(M);
     if (const auto report = solver.factorise(M); !report) return report;
     const auto report = solver.solve(external, state_.a);
@@ -289,12 +290,9 @@ class Dynamics {
   Index inverted_cell_ = -1;
 };
 template <mesh::Cell C, class Material>
-Dynamics(const mesh::Mesh<C, 3>&, const Material&, double) -> Dynamics<C, Material>;
-template <mesh::Cell C, class Material>
-Dynamics(const mesh::Mesh<C, 3>&, const Material&, double, DynamicsOptions) -> Dynamics<C, Material>;
+Dynamics(const mesh::Mesh<C, 3>&, const Material&, double, DynamicsOptions = {}) -> Dynamics<C, Material>;
 template <mesh::Cell C, class Material, la::SecondOrderScheme Scheme>
-Dynamics(const mesh::Mesh<C, 3>&, const Material&, double, Scheme) -> Dynamics<C, Material>;
-template <mesh::Cell C, class Material, la::SecondOrderScheme Scheme>
-Dynamics(const mesh::Mesh<C, 3>&, const Material&, double, Scheme, DynamicsOptions) -> Dynamics<C, Material>;
+Dynamics(const mesh::Mesh<C, 3>&, const Material&, double, Scheme, DynamicsOptions = {})
+    -> Dynamics<C, Material>;
 
 }  // namespace tunica::solid

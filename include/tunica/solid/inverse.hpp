@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace tunica::solid {
@@ -185,13 +186,14 @@ class InverseProblem {
 ///   const auto free = unloaded_shape(loaded);  image.nodes = free.nodes;  Statics wall{image, law};
 /// The tangent is not symmetric.
 template <la::LinearSolver Solver = la::Lu, class Wall>
-[[nodiscard]] InverseReport unloaded_shape(const Wall& wall, const InverseOptions& options = {}) {
+[[nodiscard]] InverseReport unloaded_shape(const Wall& wall, const InverseOptions& options = {},
+                                           Solver solver = {}) {
   static_assert(!Solver::symmetric,
                 "the tangent of the inverse problem is not symmetric: give Lu or the like");
   TUNICA_EXPECT(wall.body().laws().prestress().empty(), "the unloaded shape of a body without prestress");
   InverseReport report;
   detail::InverseProblem<Wall> problem(wall);
-  la::Newton<Solver> newton(options.newton);
+  la::Newton<Solver> newton(options.newton, std::move(solver));
   Eigen::VectorXd w = Eigen::VectorXd::Zero(wall.body().unknowns());
   double step = std::min(1.0, options.first_step);
   while (report.load < 1) {

@@ -33,11 +33,13 @@ class Statics {
   using Cell = C;
   using Element = typename Body<C, Material>::Element;
 
-  Statics(const mesh::Mesh<C, 3>& mesh, const Material& material, StaticsOptions options = {})
+  /// `solver`: one with options of its own, such as a la::Cg whose multigrid keeps rigid_body_modes().
+  Statics(const mesh::Mesh<C, 3>& mesh, const Material& material, StaticsOptions options = {},
+          Solver solver = {})
       : body_(mesh, material, 0, Mass::lumped),
         options_(options),
         step_(options.first_step),
-        newton_(options.newton) {
+        newton_(options.newton, std::move(solver)) {
     for (auto* v : {&u_, &u_start_, &dead_end_, &dead_start_, &prescribed_end_})
       *v = Eigen::VectorXd::Zero(body_.unknowns());
   }
@@ -174,9 +176,11 @@ class Statics {
   [[nodiscard]] const Body<C, Material>& body() const { return body_; }
   [[nodiscard]] const Eigen::VectorXd& unknowns() const { return u_; }
   [[nodiscard]] const StaticsOptions& options() const { return options_; }
+  [[nodiscard]] const Solver& solver() const { return newton_.solver(); }
 
   // What follows is for other ways along the path of loads: ArcLength, VolumeControl.
 
+  [[nodiscard]] Solver& borrow_solver() { return newton_.borrow_solver(); }
   /// The load reached: 0 where the path starts, 1 at its end; beyond both for ArcLength.
   [[nodiscard]] double load() const { return load_; }
   /// Takes u, in equilibrium at that load, for the state reached.
@@ -276,11 +280,7 @@ class Statics {
     if (!problem.residual(u, r0, la::no_step).admissible ||
         !problem.residual(u + length * d, r1, la::no_step).admissible)
       return false;
-    la::SparseMatrix A = body_.pattern();
-    problem.tangent(u, A);
-    Solver solver;
-    solver.analyse(A);
-    if (!solver.factorise(A) || !solver.solve((r0 - r1) / length - r0, dx)) return false;
+    if (!newton_.linear(problem, u, (r0 - r1) / length - r0, dx)) return false;
     u += d + dx;
     return true;
   }
@@ -293,8 +293,6 @@ class Statics {
   Eigen::VectorXd pressure_end_, pressure_start_;
 };
 template <mesh::Cell C, class Material>
-Statics(const mesh::Mesh<C, 3>&, const Material&) -> Statics<C, Material>;
-template <mesh::Cell C, class Material>
-Statics(const mesh::Mesh<C, 3>&, const Material&, StaticsOptions) -> Statics<C, Material>;
+Statics(const mesh::Mesh<C, 3>&, const Material&, StaticsOptions = {}) -> Statics<C, Material>;
 
 }  // namespace tunica::solid

@@ -37,7 +37,10 @@ template <class Wall>
 class VolumeControl {
  public:
   VolumeControl(Wall& wall, std::size_t number, const VolumeControlOptions& options = {})
-      : wall_(wall), number_(number), options_(options), newton_(wall.options().newton) {
+      : wall_(wall),
+        number_(number),
+        options_(options),
+        newton_(wall.options().newton, la::Borrowed(wall.borrow_solver())) {
     wall_.hold();
   }
 
@@ -110,7 +113,7 @@ class VolumeControl {
   Wall& wall_;
   std::size_t number_;
   VolumeControlOptions options_;
-  la::BorderedNewton<typename Wall::linear_solver> newton_;
+  la::BorderedNewton<la::Borrowed<typename Wall::linear_solver>> newton_;
 };
 
 }  // namespace tunica::solid
