@@ -28,10 +28,13 @@ class CellLaws {
         materials_(1, material) {}
 
   /// The law of a cell: that of its region, or the one given at first.
-  [[nodiscard]] const Material& material(Index cell) const {
+  [[nodiscard]] const Material& material(Index cell) const { return materials_[number(cell)]; }
+  /// All of them, and the number of that of a cell.
+  [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
+  [[nodiscard]] std::size_t number(Index cell) const {
     const std::size_t r =
         region_.empty() ? 0 : static_cast<std::size_t>(region_[static_cast<std::size_t>(cell)]);
-    return r < materials_.size() ? materials_[r] : materials_.front();
+    return r < materials_.size() ? r : 0;
   }
   /// Another law of the same kind for a region.
   void material(Index region, const Material& law) {

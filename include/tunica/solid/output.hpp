@@ -56,6 +56,21 @@ void for_each_point(const Body<C, Material>& body, Index e, const Eigen::VectorX
 }
 }  // namespace detail
 
+/// Cauchy stress at the nodes: recovered from the means of the cells; where the nodes have pressures of their
+/// own, only the rest of it: 6 x nodes [Pa]. Unlike nodal_stress of second order at the boundary, too.
+template <mesh::Cell C, class Material>
+[[nodiscard]] StressField recovered_stress(const Body<C, Material>& body, const Eigen::VectorXd& u) {
+  StressField cells = cell_stress(body, u);
+  if constexpr (requires { body.inside().pressures(u); }) {
+    for (Eigen::Index e = 0; e < cells.cols(); ++e) cells.col(e) = deviator(Symmetric<double>(cells.col(e)));
+    StressField nodes = recover_at_nodes(body.mesh(), cells);
+    nodes.topRows<3>().rowwise() += body.inside().pressures(u).transpose();
+    return nodes;
+  } else {
+    return recover_at_nodes(body.mesh(), cells);
+  }
+}
+
 /// J of each cell: its current volume over the one free of stress. u: 3 * nodes [m].
 template <mesh::Cell C, class Material>
 [[nodiscard]] Eigen::VectorXd cell_volume_ratio(const Body<C, Material>& body, const Eigen::VectorXd& u) {
@@ -123,7 +138,7 @@ template <mesh::Cell C, class Material>
 [[nodiscard]] WallFields nodal_fields(const Body<C, Material>& body, const Eigen::VectorXd& u,
                                       const Points<3>& fibres = Points<3>(3, 0)) {
   WallFields fields;
-  fields.cauchy = recover_at_nodes(body.mesh(), cell_stress(body, u));
+  fields.cauchy = recovered_stress(body, u);
   fields.J = recover_at_nodes(body.mesh(), cell_volume_ratio(body, u).transpose().eval()).transpose();
   if (fibres.cols() > 0)
     fields.fibre_stretch =

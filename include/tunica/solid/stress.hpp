@@ -14,14 +14,35 @@ namespace tunica::solid {
 /// One column a cell or node: xx yy zz xy yz xz [Pa].
 using StressField = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Cauchy stress of each cell, the mean over its current volume: 6 x cells. u: 3 * nodes [m].
+namespace detail {
+/// p: one a point, or one of all.
+template <class Pressure, class Sigma>
+void add_multiplier(const Pressure& p, Sigma& sigma) {
+  for (int i = 0; i < 3; ++i) sigma.row(i).array() += p;
+}
+
+/// Cauchy stress at the points of a cell with the pressures that its formulation has: of the cell, held by
+/// augment(), or of the nodes.
+template <mesh::Cell C, class Material>
+[[nodiscard]] auto stress_of(const Body<C, Material>& body, Index e, const Eigen::VectorXd& u) {
+  if constexpr (requires { body.inside().stress(e, u); }) {
+    return body.inside().stress(e, u);
+  } else {
+    auto at = Body<C, Material>::Element::stress(body.material(e), body.reference(e), body.gather(e, u),
+                                                 body.data(e));
+    add_multiplier(body.inside().multiplier(e), at.sigma);
+    return at;
+  }
+}
+}  // namespace detail
+
+/// Cauchy stress of each cell, the mean over its current volume: 6 x cells. u: 3 * nodes [m], or all
+/// unknowns of the body where it has pressures beside them.
 template <mesh::Cell C, class Material>
 [[nodiscard]] StressField cell_stress(const Body<C, Material>& body, const Eigen::VectorXd& u) {
   StressField sigma(6, body.mesh().cell_count());
   for (Index e = 0; e < body.mesh().cell_count(); ++e) {
-    auto at = Body<C, Material>::Element::stress(body.material(e), body.reference(e), body.gather(e, u),
-                                                 body.data(e));
-    at.sigma.template topRows<3>().array() += body.inside().multiplier(e);
+    const auto at = detail::stress_of(body, e, u);
     Symmetric<double> sum = Symmetric<double>::Zero();
     double volume = 0;
     for (std::size_t q = 0; q < at.volume.size(); ++q) {
@@ -39,9 +60,7 @@ template <mesh::Cell C, class Material>
   StressField sigma = StressField::Zero(6, body.mesh().node_count());
   Eigen::RowVectorXd weight = Eigen::RowVectorXd::Zero(body.mesh().node_count());
   for (Index e = 0; e < body.mesh().cell_count(); ++e) {
-    auto at = Body<C, Material>::Element::stress(body.material(e), body.reference(e), body.gather(e, u),
-                                                 body.data(e));
-    at.sigma.template topRows<3>().array() += body.inside().multiplier(e);
+    const auto at = detail::stress_of(body, e, u);
     for (std::size_t q = 0; q < at.volume.size(); ++q)
       for (const Index n : body.mesh().cells.col(e)) {
         sigma.col(n) += at.volume[q] * at.sigma.col(static_cast<int>(q));

@@ -2,12 +2,23 @@
 // Volumetric energies U(J) with bulk modulus kappa = U''(1).
 #pragma once
 
+#include "tunica/core/select.hpp"
 #include "tunica/solid/energy.hpp"
 #include "tunica/solid/hyperelastic.hpp"
 
 #include <cmath>
 
 namespace tunica::solid {
+
+/// Of U at a pressure p = U'(J) [Pa]: U*(p) = max_J [p (J - 1) - U(J)], its slope and its curvature. Laws
+/// whose U' has an inverse may give it as complement(p), as NodalPressure asks; all three are 0 where kappa
+/// is infinite.
+template <class S>
+struct Complement {
+  S energy;      // [Pa]
+  S dilatation;  // J - 1
+  S compliance;  // dJ/dp [1/Pa]
+};
 
 /// U = kappa/2 (J - 1)^2: linear in J, so a constrained pressure is exactly kappa (J - 1).
 struct Quadratic {
@@ -24,6 +35,11 @@ struct Quadratic {
   template <class S>
   [[nodiscard]] S curvature(const S&) const {
     return S(kappa);
+  }
+  template <class S>
+  [[nodiscard]] Complement<S> complement(const S& p) const {
+    const S c(1 / kappa), e = c * p;
+    return {.energy = S(0.5) * p * e, .dilatation = e, .compliance = c};
   }
 };
 
@@ -65,6 +81,20 @@ struct SimoTaylor {
   template <class S>
   [[nodiscard]] S curvature(const S& J) const {
     return S(0.5 * kappa) * (S(1) + S(1) / (J * J));
+  }
+  /// J = s + sqrt(1 + s^2) with s = p/kappa, U* = kappa/2 (s J - 2 s + ln J); a series of it for small s.
+  template <class S>
+  [[nodiscard]] Complement<S> complement(const S& p) const {
+    using std::abs;
+    using std::log;
+    using std::sqrt;
+    const S s = S(1 / kappa) * p, ss = s * s, root = sqrt(S(1) + ss), J = s + root;
+    const S few = s * (S(0.5) + s * (S(1. / 6) + ss * (S(1. / 112) * ss - S(1. / 40))));
+    const auto small = abs(s) < S(0.01);
+    const S whole = S(0.5) * (J - S(2) + log(J) / select(small, S(1), s));
+    return {.energy = p * select(small, few, whole),
+            .dilatation = s + ss / (S(1) + root),
+            .compliance = S(1 / kappa) * (J / root)};
   }
 };
 
