@@ -16,13 +16,22 @@ struct Aggregates {
 };
 
 /// One flag an entry: |A_ij|^2 > threshold^2 |A_ii| |A_jj|, in Frobenius norms; the diagonal is not strong.
+/// Of unknowns that are coupled to nothing (prescribed ones) it does not matter how large their diagonal is.
 template <int B>
 [[nodiscard]] std::vector<std::uint8_t> strong_couplings(const RowsView<double, B, B>& A, double threshold) {
   std::vector<double> diagonal(at(A.rows), 0.0);
   parallel_chunks(A.rows, row_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (auto i = static_cast<Index>(begin); i < end; ++i)
       for (Index k = A.start[i]; k < A.start[i + 1]; ++k)
-        if (A.column[k] == i) diagonal[at(i)] = threshold * std::sqrt(squared_size<B * B>(A.block(k)));
+        if (A.column[k] == i) {
+          double square = squared_size<B * B>(A.block(k));
+          if constexpr (B > 1) {
+            const auto coupled = coupled_unknowns(A, i);
+            for (std::size_t c = 0; c < B; ++c)
+              if (const double d = A.block(k)[c * (B + 1)]; !coupled[c]) square -= d * d;
+          }
+          diagonal[at(i)] = threshold * std::sqrt(std::max(square, 0.0));
+        }
   });
   std::vector<std::uint8_t> strong(at(A.start[A.rows]));
   parallel_chunks(A.rows, row_chunk, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {

@@ -4,10 +4,12 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/parallel.hpp"
 #include "tunica/la/block_matrix.hpp"
 
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -87,6 +89,33 @@ template <int N, class T>
       for (int c = 0; c < N; ++c)
         B.block(b)[r * N + c] = A.block(place[index(b)])[turned[index(b)] ? c * N + r : r * N + c];
   return B;
+}
+
+/// Zeros in the pattern of the upper triangle of a matrix with a symmetric pattern.
+template <int N, class T>
+[[nodiscard]] BlockMatrix<N, T> upper_pattern(const BlockMatrix<N, T>& A) {
+  std::vector<Index> start{0}, column;
+  start.reserve(A.start().size());
+  column.reserve(A.column().size() / 2 + A.start().size());
+  for (std::size_t i = 0; i + 1 < A.start().size(); ++i) {
+    for (Index k = A.start()[i]; k < A.start()[i + 1]; ++k)
+      if (const Index j = A.column()[static_cast<std::size_t>(k)]; j >= static_cast<Index>(i))
+        column.push_back(j);
+    start.push_back(static_cast<Index>(column.size()));
+  }
+  return {std::move(start), std::move(column), BlockStorage::upper};
+}
+
+/// U, from upper_pattern(A), = the upper triangle of A.
+template <int N, class T>
+void copy_upper(const BlockMatrix<N, T>& A, BlockMatrix<N, T>& U) {
+  parallel_chunks(A.node_count(), 1024, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const Index count = U.start()[i + 1] - U.start()[i];  // the last ones of the row
+      std::copy_n(A.block(A.start()[i + 1] - count),
+                  static_cast<std::size_t>(count) * BlockMatrix<N, T>::block_size, U.block(U.start()[i]));
+    }
+  });
 }
 
 /// As Eigen's compressed matrix with both triangles, by rows or by columns. InputError beyond 32-bit indices.

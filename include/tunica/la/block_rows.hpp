@@ -5,6 +5,7 @@
 #include "tunica/la/vector_ops.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -57,6 +58,17 @@ template <int Size, class T>
   double sum = 0;
   for (int k = 0; k < Size; ++k) sum += static_cast<double>(a[k]) * static_cast<double>(a[k]);
   return sum;
+}
+
+/// Which unknowns of a node are coupled to any other unknown: prescribed ones are not.
+template <int B>
+[[nodiscard]] std::array<bool, B> coupled_unknowns(const RowsView<double, B, B>& A, Index node) {
+  std::array<bool, B> coupled{};
+  for (Index k = A.start[node]; k < A.start[node + 1]; ++k)
+    for (std::size_t r = 0; r < B; ++r)
+      for (std::size_t c = 0; c < B; ++c)
+        coupled[r] = coupled[r] || ((A.column[k] != node || r != c) && A.block(k)[r * B + c] != 0);
+  return coupled;
 }
 
 /// The inverse of a B x B block by elimination on the diagonal. A pivot that is not safely away from
@@ -131,6 +143,8 @@ class Blocked {
   }
 
   [[nodiscard]] RowsView<double, B, B> view() const { return rows_.view(); }
+  /// Stored numbers of the matrix of scalars.
+  [[nodiscard]] Eigen::Index entries() const { return static_cast<Eigen::Index>(place_.size()); }
 
  private:
   BlockRows<double, B, B> rows_;
@@ -145,11 +159,14 @@ class Blocked<1> {
   void set_values(const RowMatrix& A) {
     const auto n = static_cast<Index>(A.rows());
     view_ = {n, n, A.outerIndexPtr(), A.innerIndexPtr(), A.valuePtr()};
+    entries_ = A.nonZeros();
   }
   [[nodiscard]] RowsView<double, 1, 1> view() const { return view_; }
+  [[nodiscard]] Eigen::Index entries() const { return entries_; }
 
  private:
   RowsView<double, 1, 1> view_;
+  Eigen::Index entries_ = 0;
 };
 
 }  // namespace tunica::la::detail

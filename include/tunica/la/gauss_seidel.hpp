@@ -85,6 +85,8 @@ class GaussSeidel {
     parallel_chunks(rows_, chunk_, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       for (auto i = static_cast<Index>(end); i-- > begin;) {
         std::array<T, B> sum = copy(b, i);
+        if constexpr (B > 1)
+          if (i > begin) fetch(i - 1);
         subtract(start_[at(i)], outer_[at(i)], x, sum);
         if (several) subtract(outer_[at(i)], end_[at(i)], old, sum);
         store(i, sum, x);
@@ -110,9 +112,21 @@ class GaussSeidel {
     for (Index k = begin; k < end; ++k) {
       const T* a = value_.data() + block * at(k);
       const T* xk = x + B * at(column_[at(k)]);
-      for (std::size_t r = 0; r < B; ++r)
-        for (std::size_t c = 0; c < B; ++c) sum[r] -= a[r * B + c] * xk[c];
+      for (std::size_t r = 0; r < B; ++r) {  // the product by itself: sums of rows wait for one another less
+        T product = a[r * B] * xk[0];
+        for (std::size_t c = 1; c < B; ++c) product += a[r * B + c] * xk[c];
+        sum[r] -= product;
+      }
     }
+  }
+
+  /// Asks for the numbers of a row early: no machine expects rows that come last to first.
+  void fetch(Index i) const {
+#if defined(__GNUC__)
+    constexpr std::size_t line = 64 / sizeof(T);
+    for (std::size_t k = block * at(start_[at(i)]), end = block * at(start_[at(i) + 1]); k < end; k += line)
+      __builtin_prefetch(value_.data() + k);
+#endif
   }
 
   void store(Index i, const std::array<T, B>& sum, T* x) const {

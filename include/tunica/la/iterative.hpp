@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/la/bicgstab.hpp"
+#include "tunica/la/block_convert.hpp"
 #include "tunica/la/cg.hpp"
 #include "tunica/la/gmres.hpp"
 #include "tunica/la/linear_solver.hpp"
@@ -25,10 +26,30 @@ concept Refreshable = requires(P p, const RowMatrix& A) {
   { p.refresh(A) } -> std::same_as<SolveReport>;
 };
 
+/// A preconditioner that reads matrices of blocks as they are.
+template <class P>
+concept ReadsBlocks = requires(P p, const BlockMatrix<P::block_rows>& A) {
+  { p.compute(A) } -> std::same_as<SolveReport>;
+  { p.refresh(A) } -> std::same_as<SolveReport>;
+};
+template <class P>
+struct BlocksOf {
+  struct None {};
+  using type = None;
+};
+template <ReadsBlocks P>
+struct BlocksOf<P> {
+  using type = BlockMatrix<P::block_rows>;
+};
+
 template <Krylov Method, class Precond>
 class Iterative {
  public:
   static constexpr bool symmetric = Method == Krylov::cg || Method == Krylov::minres;
+  static constexpr int block_rows = [] {
+    if constexpr (ReadsBlocks<Precond>) return Precond::block_rows;
+    return 1;
+  }();
 
   Iterative() = default;
   explicit Iterative(KrylovOptions options, Precond preconditioner = Precond())
@@ -40,6 +61,7 @@ class Iterative {
   /// `diverged` for a matrix with a NaN.
   SolveReport factorise(const SparseMatrix& A) {
     TUNICA_EXPECT(A.isCompressed(), "a solver reads compressed matrices");
+    in_blocks_ = false;
     if constexpr (symmetric)  // its columns are its rows
       A_ = Eigen::Map<const RowMatrix>(A.rows(), A.cols(), A.nonZeros(), A.outerIndexPtr(), A.innerIndexPtr(),
                                        A.valuePtr());
@@ -56,23 +78,49 @@ class Iterative {
     }
   }
 
+  /// The same for a matrix of blocks, either storage: nothing is turned into numbers and back. A solver of
+  /// symmetric matrices keeps the upper triangle alone.
+  void analyse(const BlockMatrix<block_rows>&) requires ReadsBlocks<Precond> { fresh_ = true; }
+  SolveReport factorise(const BlockMatrix<block_rows>& A) requires ReadsBlocks<Precond> {
+    if (!in_blocks_ || blocks_.rows() != A.rows()) fresh_ = true;
+    if (symmetric && A.storage() == BlockStorage::full)  // another pattern that nobody announced
+      fresh_ = fresh_ || 2 * blocks_.block_count() - A.node_count() != A.block_count();
+    in_blocks_ = true;
+    if (!symmetric || A.storage() == BlockStorage::upper) {
+      blocks_ = A;
+    } else {
+      if (fresh_) blocks_ = upper_pattern(A);
+      copy_upper(A, blocks_);
+    }
+    const auto report = fresh_ ? preconditioner_.compute(A) : preconditioner_.refresh(A);
+    fresh_ = !report;
+    return report;
+  }
+
   /// x: the start if it has the size of b, zero otherwise.
   SolveReport solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     if (x.size() != b.size()) x = Eigen::VectorXd::Zero(b.size());
-    const ApplyMatrix<> A{A_};
+    if constexpr (ReadsBlocks<Precond>)
+      if (in_blocks_) return solve(blocks_, b, x);
+    return solve(ApplyMatrix<>{A_}, b, x);
+  }
+
+  [[nodiscard]] const Precond& preconditioner() const { return preconditioner_; }
+
+ private:
+  template <class Operator>
+  SolveReport solve(const Operator& A, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     if constexpr (Method == Krylov::cg) return cg(A, preconditioner_, b, x, options_);
     if constexpr (Method == Krylov::minres) return minres(A, preconditioner_, b, x, options_);
     if constexpr (Method == Krylov::bicgstab) return bicgstab(A, preconditioner_, b, x, options_);
     if constexpr (Method == Krylov::gmres) return gmres(A, preconditioner_, b, x, options_);
   }
 
-  [[nodiscard]] const Precond& preconditioner() const { return preconditioner_; }
-
- private:
   KrylovOptions options_;
   RowMatrix A_;
+  typename BlocksOf<Precond>::type blocks_;
   Precond preconditioner_;
-  bool fresh_ = true;
+  bool fresh_ = true, in_blocks_ = false;
 };
 
 }  // namespace detail

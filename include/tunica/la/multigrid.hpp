@@ -5,6 +5,7 @@
 
 #include "tunica/core/expect.hpp"
 #include "tunica/core/solve_report.hpp"
+#include "tunica/la/block_convert.hpp"
 #include "tunica/la/multigrid_level.hpp"
 
 #include <cmath>
@@ -30,6 +31,8 @@ struct MultigridOptions {
 template <int Block = 1, int Modes = Block, class Scalar = float>
 class Multigrid {
  public:
+  static constexpr int block_rows = Block;
+
   Multigrid() = default;
   explicit Multigrid(MultigridOptions options) : options_(options) {}
 
@@ -44,61 +47,28 @@ class Multigrid {
   SolveReport compute(const RowMatrix& A) {
     TUNICA_EXPECT(A.rows() == A.cols() && A.rows() % Block == 0,
                   "a multigrid needs a square matrix of blocks");
-    coarse_.clear();
-    matrices_.clear();
-    fine_ = {};
-    if (!finite(A)) return failed();
     matrix_.set_up(A);
-    scale_ = scale_of(matrix_.view());
-    const bool direct = A.rows() <= options_.coarsest;
-    std::vector<double> modes = direct ? std::vector<double>{} : fine_modes(A);
-    double threshold = options_.strong;
-    levels_ = 1;
-    fine_.set_smoother(matrix_.view(), scale_);
-    if (!direct && options_.max_levels > 1 && fine_.coarsen(matrix_.view(), threshold, modes)) {
-      matrices_.reserve(detail::at(options_.max_levels));
-      detail::galerkin(matrix_.view(), fine_.P, fine_.R, matrices_.emplace_back());
-      while (true) {
-        auto& level = coarse_.emplace_back();
-        const auto A_l = matrices_.back().view();
-        level.set_smoother(A_l, scale_);
-        ++levels_;
-        threshold *= 0.5;
-        if (A_l.rows * Modes <= options_.coarsest || levels_ >= options_.max_levels ||
-            !level.coarsen(A_l, threshold, modes))
-          break;
-        detail::BlockRows<double, Modes, Modes> next;
-        detail::galerkin(A_l, level.P, level.R, next);
-        matrices_.push_back(std::move(next));
-      }
-    }
-    factorise_coarsest();
-    size_ = A.rows();
-    entries_ = A.nonZeros();
-    blocks_ = matrix_.view().start[matrix_.view().rows];
-    return usable_report();
+    return set_up(matrix_.view());
+  }
+  /// The same where the blocks are there already: they are read in place, those of an upper triangle as a
+  /// whole matrix.
+  SolveReport compute(const BlockMatrix<Block>& A) {
+    if (A.storage() == BlockStorage::upper) return compute(whole(A));
+    matrix_ = {};
+    return set_up(view_of(A));
   }
 
   /// Reads new values of a matrix of the same pattern: aggregates and patterns stay, every product is
   /// made anew in its place. What was strong stays strong: after large changes compute() again.
   SolveReport refresh(const RowMatrix& A) {
-    if (A.rows() != size_ || A.nonZeros() != entries_) return compute(A);
-    if (!finite(A)) return failed();
+    if (A.rows() != size_ || A.nonZeros() != matrix_.entries()) return compute(A);
     matrix_.set_values(A);
-    scale_ = scale_of(matrix_.view());
-    fine_.smoother.set_values(matrix_.view(), scale_);
-    if (!coarse_.empty()) {
-      fine_.set_transfer(matrix_.view());
-      detail::galerkin(matrix_.view(), fine_.P, fine_.R, matrices_[0]);
-    }
-    for (std::size_t l = 0; l < coarse_.size(); ++l) {
-      coarse_[l].smoother.set_values(matrices_[l].view(), scale_);
-      if (l + 1 == coarse_.size()) break;
-      coarse_[l].set_transfer(matrices_[l].view());
-      detail::galerkin(matrices_[l].view(), coarse_[l].P, coarse_[l].R, matrices_[l + 1]);
-    }
-    factorise_coarsest();
-    return usable_report();
+    return renew(matrix_.view());
+  }
+  SolveReport refresh(const BlockMatrix<Block>& A) {
+    if (A.storage() == BlockStorage::upper) return refresh(whole(A));
+    if (A.rows() != size_ || A.block_count() != blocks_) return compute(A);
+    return renew(view_of(A));
   }
 
   /// z ~ A^-1 r: one cycle. r is scaled by a power of two, so that no unit leaves the range of Scalar.
@@ -134,6 +104,64 @@ class Multigrid {
  private:
   using Fine = detail::MultigridLevel<Scalar, Block, Modes>;
   using Coarse = detail::MultigridLevel<Scalar, Modes, Modes>;
+  using View = detail::RowsView<double, Block, Block>;
+
+  [[nodiscard]] static View view_of(const BlockMatrix<Block>& A) {
+    return {A.node_count(), A.node_count(), A.start().data(), A.column().data(), A.values()};
+  }
+
+  SolveReport set_up(const View& A) {
+    coarse_.clear();
+    matrices_.clear();
+    fine_ = {};
+    size_ = blocks_ = 0;
+    if (!finite(A)) return failed();
+    scale_ = scale_of(A);
+    const bool direct = A.rows * Block <= options_.coarsest;
+    std::vector<double> modes = direct ? std::vector<double>{} : fine_modes(A);
+    double threshold = options_.strong;
+    levels_ = 1;
+    fine_.set_smoother(A, scale_);
+    if (!direct && options_.max_levels > 1 && fine_.coarsen(A, threshold, modes)) {
+      matrices_.reserve(detail::at(options_.max_levels));
+      detail::galerkin(A, fine_.P, fine_.R, matrices_.emplace_back());
+      while (true) {
+        auto& level = coarse_.emplace_back();
+        const auto A_l = matrices_.back().view();
+        level.set_smoother(A_l, scale_);
+        ++levels_;
+        threshold *= 0.5;
+        if (A_l.rows * Modes <= options_.coarsest || levels_ >= options_.max_levels ||
+            !level.coarsen(A_l, threshold, modes))
+          break;
+        detail::BlockRows<double, Modes, Modes> next;
+        detail::galerkin(A_l, level.P, level.R, next);
+        matrices_.push_back(std::move(next));
+      }
+    }
+    factorise_coarsest(A);
+    size_ = Eigen::Index{Block} * A.rows;
+    blocks_ = A.start[A.rows];
+    return usable_report();
+  }
+
+  SolveReport renew(const View& A) {
+    if (!finite(A)) return failed();
+    scale_ = scale_of(A);
+    fine_.smoother.set_values(A, scale_);
+    if (!coarse_.empty()) {
+      fine_.set_transfer(A);
+      detail::galerkin(A, fine_.P, fine_.R, matrices_[0]);
+    }
+    for (std::size_t l = 0; l < coarse_.size(); ++l) {
+      coarse_[l].smoother.set_values(matrices_[l].view(), scale_);
+      if (l + 1 == coarse_.size()) break;
+      coarse_[l].set_transfer(matrices_[l].view());
+      detail::galerkin(matrices_[l].view(), coarse_[l].P, coarse_[l].R, matrices_[l + 1]);
+    }
+    factorise_coarsest(A);
+    return usable_report();
+  }
 
   [[nodiscard]] static double power_of_two_near(double x) { return std::ldexp(1.0, std::ilogb(x)); }
 
@@ -145,13 +173,14 @@ class Multigrid {
     });
   }
 
-  [[nodiscard]] static bool finite(const RowMatrix& A) {
-    return std::isfinite(parallel_sum(A.nonZeros(), vector_chunk, [&](std::ptrdiff_t b, std::ptrdiff_t e) {
-      return Eigen::Map<const Eigen::VectorXd>(A.valuePtr() + b, e - b).sum();
+  [[nodiscard]] static bool finite(const View& A) {
+    const auto count = std::ptrdiff_t{Block} * Block * A.start[A.rows];
+    return std::isfinite(parallel_sum(count, vector_chunk, [&](std::ptrdiff_t b, std::ptrdiff_t e) {
+      return Eigen::Map<const Eigen::VectorXd>(A.value + b, e - b).sum();
     }));
   }
 
-  [[nodiscard]] static double scale_of(const detail::RowsView<double, Block, Block>& A) {
+  [[nodiscard]] static double scale_of(const View& A) {
     double largest = 0;
     for (Index i = 0; i < A.rows; ++i)
       for (Index k = A.start[i]; k < A.start[i + 1]; ++k)
@@ -161,31 +190,33 @@ class Multigrid {
   }
 
   /// The modes of the nodes by blocks; zero at unknowns that are coupled to nothing (prescribed ones).
-  [[nodiscard]] std::vector<double> fine_modes(const RowMatrix& A) const {
-    TUNICA_EXPECT(modes_.size() == 0 || modes_.rows() == A.rows(), "a near-null space has a row an unknown");
+  [[nodiscard]] std::vector<double> fine_modes(const View& A) const {
+    const Eigen::Index n = Eigen::Index{Block} * A.rows;
+    TUNICA_EXPECT(modes_.size() == 0 || modes_.rows() == n, "a near-null space has a row an unknown");
     TUNICA_EXPECT(modes_.size() > 0 || Modes == Block, "modes other than constants must be given");
-    std::vector<double> modes(detail::at(A.rows()) * Modes, 0.0);
-    for (Eigen::Index i = 0; i < A.rows(); ++i) {
-      bool coupled = false;
-      for (int k = A.outerIndexPtr()[i]; k < A.outerIndexPtr()[i + 1] && !coupled; ++k)
-        coupled = A.innerIndexPtr()[k] != i && A.valuePtr()[k] != 0;
-      for (int m = 0; m < Modes && coupled; ++m)
-        modes[detail::at(i) * Modes + detail::at(m)] = modes_.size() > 0 ? modes_(i, m)
-                                                       : i % Block == m  ? 1.0
-                                                                         : 0.0;
+    std::vector<double> modes(detail::at(n) * Modes, 0.0);
+    for (Index node = 0; node < A.rows; ++node) {
+      const auto coupled = detail::coupled_unknowns(A, node);
+      for (int c = 0; c < Block; ++c) {
+        const Eigen::Index i = Eigen::Index{Block} * node + c;
+        for (int m = 0; m < Modes && coupled[detail::at(c)]; ++m)
+          modes[detail::at(i) * Modes + detail::at(m)] = modes_.size() > 0 ? modes_(i, m)
+                                                         : c == m          ? 1.0
+                                                                           : 0.0;
+      }
     }
     return modes;
   }
 
   /// The last level directly where it is small; where nothing made it so its diagonal dominates.
-  void factorise_coarsest() {
+  void factorise_coarsest(const View& A) {
     direct_ = false;
     const std::size_t room = 2 * detail::at(options_.coarsest);
     if (!matrices_.empty() && detail::at(matrices_.back().rows) * Modes <= room) {
       factors_.template compute<Modes>(matrices_.back().view(), scale_);
       direct_ = true;
-    } else if (matrices_.empty() && detail::at(matrix_.view().rows) * Block <= room) {
-      factors_.template compute<Block>(matrix_.view(), scale_);
+    } else if (matrices_.empty() && detail::at(A.rows) * Block <= room) {
+      factors_.template compute<Block>(A, scale_);
       direct_ = true;
     }
   }
@@ -222,13 +253,13 @@ class Multigrid {
 
   MultigridOptions options_;
   Eigen::MatrixXd modes_;
-  detail::Blocked<Block> matrix_;
+  detail::Blocked<Block> matrix_;  // of a matrix that came as scalars
   Fine fine_;
   std::vector<Coarse> coarse_;                                     // those after the first
   std::vector<detail::BlockRows<double, Modes, Modes>> matrices_;  // of coarse_
   detail::DenseFactors<Scalar> factors_;
-  Eigen::Index size_ = 0, entries_ = 0, blocks_ = 0;  // of the matrix
-  double scale_ = 1;                                  // of the matrix, a power of two
+  Eigen::Index size_ = 0, blocks_ = 0;  // of the matrix
+  double scale_ = 1;                    // of the matrix, a power of two
   int levels_ = 0;
   bool direct_ = false, usable_ = false;
 };
