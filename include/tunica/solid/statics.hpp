@@ -164,8 +164,8 @@ class Statics {
       }
     body_.laws().prestress(std::move(stored));
     leave_path();
-    u_.setZero();
-    u_start_.setZero();
+    u_.head(3 * body_.mesh().node_count()).setZero();  // pressures of nodes stay
+    u_start_ = u_;
   }
 
   /// The pressures reached hold the volumes of the cells from now on, see Interior; largest |v/V - 1|.
