@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/solid/prestress.hpp"
+#include "support/tube_cells.hpp"
 #include "tunica/meshing/box.hpp"
 #include "tunica/solid/dynamics.hpp"
 #include "tunica/solid/fibre_laws.hpp"
+#include "tunica/solid/guccione_law.hpp"
 #include "tunica/solid/inverse.hpp"
+#include "tunica/solid/isochoric_law.hpp"
 #include "tunica/solid/laws.hpp"
+#include "tunica/solid/viscoelastic.hpp"
 
 #include <doctest/doctest.h>
 #include <Eigen/LU>
@@ -180,5 +184,118 @@ TEST_SUITE("unit") {
     MESSAGE("moved " << moved / side << " of its side, without prestress " << swung / side);
     CHECK(moved < 1e-8 * side);
     CHECK(swung > 1e-2 * side);
+  }
+
+  TEST_CASE("solid: a wall of linear tetrahedra with nodal pressures stays where it was imaged") {
+    const test::ThickTube tube;
+    const double inner = 5.2688758130e-3, outer = 6.7090276741e-3, p = 15998.687;
+    const auto mesh = test::quarter_of_tube<mesh::Tet4>(3, inner, outer);
+    const Hyperelastic law{Yeoh{.c10 = tube.c10, .c20 = tube.c20}, SimoTaylor{.kappa = 1e4 * 2 * tube.c10}};
+    auto wall = test::wall_of_tube(mesh, with<NodalPressure>(law), p);
+    const auto report = prestress(wall, {.steps = 20});
+    REQUIRE(report);
+    MESSAGE("settled " << report.settlings << " times, " << report.solve.iterations
+                       << " iterations: residual " << report.residual << ", drift "
+                       << report.drift / (2 * outer) << " of the diameter");
+    CHECK(report.residual <= 1e-6);
+    CHECK(report.drift < 1e-6 * 2 * outer);
+    // Another wall with what was stored finds the same place, under its pressures from nothing.
+    auto again = test::wall_of_tube(mesh, with<NodalPressure>(law), p);
+    again.laws().prestress(wall.body().laws().prestress());
+    REQUIRE(again.solve());
+    const double moved = again.displacement().cwiseAbs().maxCoeff();
+    const Eigen::VectorXd there = again.body().inside().pressures(again.unknowns()),
+                          here = wall.body().inside().pressures(wall.unknowns());
+    MESSAGE("a wall that takes it moves by " << moved / (2 * outer) << " of the diameter, its pressures by "
+                                             << (there - here).norm() / here.norm());
+    CHECK(moved < 1e-6 * outer);
+    CHECK((there - here).norm() < 1e-4 * here.norm());
+    // Mean hoop stress p r/t, and without the stored deformation the wall swells.
+    const StressField sigma = cell_stress(wall.body(), wall.unknowns());
+    double force = 0, area = 0;
+    for (Index e = 0; e < mesh.cell_count(); ++e) {
+      Vec3 x = Vec3::Zero();
+      for (const Index k : mesh.cells.col(e)) x += mesh.nodes.col(k) / 4;
+      const double r = x.head<2>().norm(), c = x[0] / r, s = x[1] / r;
+      force += (s * s * sigma(0, e) + c * c * sigma(1, e) - 2 * c * s * sigma(3, e)) / r;
+      area += 1 / r;  // cells of one angle and one thickness: volumes as r, int s_tt dr over them
+    }
+    const double mean = p * inner / (outer - inner);
+    MESSAGE("mean hoop stress " << force / area / mean << " of p r/t");
+    CHECK(force / area == doctest::Approx(mean).epsilon(0.02));
+    auto bare = test::wall_of_tube(mesh, with<NodalPressure>(law), p);
+    REQUIRE(bare.solve());
+    CHECK(bare.displacement().cwiseAbs().maxCoeff() > 0.03 * inner);
+  }
+
+  TEST_CASE("solid: a viscoelastic fibrous wall remembers its prestress as long past and rests in it") {
+    const auto mesh = meshing::box_hexes(meshing::Block{.cells = {2, 1, 1}, .hi = Vec3::Constant(side)});
+    const Hyperelastic slow{Viscoelastic{artery.isochoric, std::array{Prony{.ratio = 0.8, .time = 0.02}}},
+                            artery.volumetric};
+    using Slow = decltype(slow.isochoric);
+    const auto given = Slow::at_rest(fibres());
+    Statics wall{mesh, slow};
+    Statics elastic{mesh, artery};
+    for (Index e = 0; e < mesh.cell_count(); ++e) {
+      wall.laws().point_data(e, given);
+      elastic.laws().point_data(e, fibres());
+    }
+    pull(wall, mesh, 30e3);
+    pull(elastic, mesh, 30e3);
+    const auto report = prestress(wall, {.steps = 20});
+    REQUIRE(report);
+    REQUIRE(prestress(elastic, {.steps = 20}));
+    // It is that of the law which is left when all is forgotten, with its fibres carried back.
+    const auto data = wall.body().data(0);
+    const auto other = elastic.body().data(0);
+    CHECK((data.prestress[0] - other.prestress[0]).norm() < 1e-9);
+    CHECK((data.prestress[0] - Eigen::Matrix3d::Identity()).norm() > 0.05);
+    for (std::size_t k = 0; k < 6; ++k)
+      CHECK(data.points[0].m[k] == doctest::Approx(other.points[0].m[k]).epsilon(1e-9));
+    CHECK(std::abs(data.points[0].m[0] - fibres().m[0]) > 1e-3);
+
+    Dynamics moving{mesh, slow, 1100.0}, forgetful{mesh, slow, 1100.0};
+    for (auto* d : {&moving, &forgetful}) {
+      for (Index e = 0; e < mesh.cell_count(); ++e) d->laws().point_data(e, given);
+      d->laws().prestress(wall.body().laws().prestress());
+      pull(*d, mesh, 30e3);
+    }
+    remember(moving.laws(), remembered(wall.laws()));
+    for (auto* d : {&moving, &forgetful}) {
+      REQUIRE(d->start(wall.displacement(), Points<3>::Zero(3, mesh.node_count())));
+      for (int k = 0; k < 40; ++k) REQUIRE(d->step(1e-3));  // two times that of the branch
+    }
+    const double moved = (moving.nodal_displacement() - wall.displacement()).cwiseAbs().maxCoeff(),
+                 swung = (forgetful.nodal_displacement() - wall.displacement()).cwiseAbs().maxCoeff();
+    MESSAGE("drift " << report.drift / side << "; moved " << moved / side
+                     << " of its side, without its memory " << swung / side);
+    CHECK(moved < 1e-6 * side);
+    CHECK(swung > 1e-3 * side);
+  }
+
+  TEST_CASE("solid: a frame of fibres under a prestress stays orthogonal and three families do not") {
+    const auto mesh = meshing::box_hexes(1);
+    const Hyperelastic muscle{Isochoric{Guccione{.C = 2e3, .bf = 8, .bt = 2, .bfs = 4}},
+                              Quadratic{.kappa = 1e6}};
+    Statics wall{mesh, muscle};
+    Fibres<double, 3> axes;
+    axes.set(0, {0.6, 0.8, 0});
+    axes.set(1, {-0.8, 0.6, 0});
+    axes.set(2, {0, 0, 1});
+    wall.laws().point_data(0, axes);
+    Eigen::Matrix3d F;
+    F << 1.2, 0.3, 0, 0, 0.9, 0.1, 0.05, 0, 1;
+    wall.laws().prestress(std::vector<Eigen::Matrix3d>(8, F));
+    const auto& at = wall.body().data(0).points[0];
+    Eigen::Matrix3d Q;
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 3; ++i) Q(i, k) = at[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)];
+    CHECK((Q.transpose() * Q - Eigen::Matrix3d::Identity()).norm() < 1e-14);
+    CHECK(Q.determinant() == doctest::Approx(1));
+    CHECK((F * Q.col(0)).normalized().dot(Vec3(0.6, 0.8, 0)) == doctest::Approx(1).epsilon(1e-14));
+    CHECK(std::abs(Q.col(1).dot((F.inverse() * Vec3(-0.8, 0.6, 0)).cross(Q.col(0)).normalized())) < 1e-14);
+    Fibres<double, 3> families = axes;
+    pull_back(F, families);
+    CHECK(std::abs(dot(families[0], families[1])) > 0.01);
   }
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/tensor.hpp"
+#include "tunica/solid/fibres.hpp"
 #include "tunica/solid/isochoric.hpp"
 #include "tunica/solid/isochoric_part.hpp"
 
@@ -38,15 +39,25 @@ template <class S>
 
 }  // namespace detail
 
-/// Directions a on a body under F_p as unit directions free of stress, F_p^-1 a / |F_p^-1 a|.
-template <class FibreData>
+/// Directions a on a body under F_p as unit directions free of stress, F_p^-1 a / |F_p^-1 a|. Of the axes of
+/// a frame (Frame) the first goes back so, the second as the part of F_p^-1 a across it: they stay
+/// orthogonal.
+template <bool Frame = false, class FibreData>
 void pull_back(const Eigen::Matrix3d& F_p, FibreData& fibres) {
+  static_assert(!Frame || fibre_families<FibreData> == 3, "a frame has three axes");
   const Eigen::Matrix3d inverse = F_p.inverse();
-  for (std::size_t family = 0; 3 * family < fibres.m.size(); ++family) {
+  Eigen::Vector3d back[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (std::size_t family = 0; family < fibre_families<FibreData>; ++family) {
     const auto given = fibres[family];
-    const Eigen::Vector3d a = inverse * Eigen::Vector3d(given[0], given[1], given[2]);
+    Eigen::Vector3d a = inverse * Eigen::Vector3d(given[0], given[1], given[2]);
+    if (Frame && family == 1) a -= a.dot(back[0]) * back[0];
+    if (Frame && family == 2)  // on the side where it was
+      a = (a.dot(back[0].cross(back[1])) < 0 ? -1 : 1) * back[0].cross(back[1]);
     const double length = a.norm();
-    if (length > 0) fibres.set(family, {a[0] / length, a[1] / length, a[2] / length});
+    if (!(length > 0)) continue;
+    a /= length;
+    if (family < 2) back[family] = a;
+    fibres.set(family, {a[0], a[1], a[2]});
   }
 }
 

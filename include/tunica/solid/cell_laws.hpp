@@ -60,7 +60,8 @@ class CellLaws {
     for (std::size_t q = 0; q < Points; ++q) point_data(cell, q, given);
   }
 
-  /// F_p of a prestress: Points a cell, one cell after the other; empty without one.
+  /// F_p of a prestress: Points a cell, one cell after the other; empty without one. What laws remember
+  /// begins anew with another.
   [[nodiscard]] const std::vector<Eigen::Matrix3d>& prestress() const { return prestress_; }
   void prestress(std::vector<Eigen::Matrix3d> stored) {
     TUNICA_EXPECT(stored.empty() || stored.size() == cell_count_ * Points,
@@ -112,8 +113,8 @@ class CellLaws {
   // Fibres are given on the mesh; the law wants them free of stress: F_p^-1 a, of unit length.
   void carry_back(std::size_t at) {
     points_[at] = given_[at];
-    if constexpr (requires { points_[at].set(0, points_[at][0]); })
-      if (!prestress_.empty()) pull_back(prestress_[at], points_[at]);
+    if constexpr (fibre_families < PointData >> 0)
+      if (!prestress_.empty()) pull_back<reads_frame<Law>>(prestress_[at], points_[at]);
   }
 
   std::vector<Index> region_;

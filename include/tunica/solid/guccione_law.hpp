@@ -21,6 +21,7 @@ struct Guccione {
   double bt;   // across [-]
   double bfs;  // shear with the fibre [-]
 
+  static constexpr bool orthogonal_frame = true;
   template <class S>
   using Point = Fibres<S, 3>;
 

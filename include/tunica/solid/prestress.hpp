@@ -4,11 +4,13 @@
 
 #include "tunica/core/expect.hpp"
 #include "tunica/la/newton.hpp"
+#include "tunica/solid/history.hpp"
 #include "tunica/solid/statics.hpp"
 
 #include <Eigen/Core>
 
-#include <algorithm>
+#include <limits>
+#include <type_traits>
 
 namespace tunica::solid {
 
@@ -30,14 +32,9 @@ struct [[nodiscard]] PrestressReport {
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
 };
 
-/// `wall` is composed on the mesh of the imaged shape, with the loads that act there as end values. Raises
-/// them in steps and stores the deformation of each, so that the mesh stays the image and its stresses
-/// balance the loads; then stores what is left, which each time is less by the stress over the stiffness. The
-/// wall is left in the equilibrium next to the image, `drift` away: what follows starts there;
-/// wall.body().laws().prestress() is what a Dynamics on the same mesh takes. The stresses are one equilibrium
-/// of the image; those of a body that was loaded from a shape free of stress (unloaded_shape) are another.
+namespace detail {
 template <class Wall>
-[[nodiscard]] PrestressReport prestress(Wall& wall, const PrestressOptions& options = {}) {
+[[nodiscard]] PrestressReport balanced_image(Wall& wall, const PrestressOptions& options) {
   TUNICA_EXPECT(options.steps > 0, "the load is raised in steps");
   PrestressReport report;
   for (int left = options.steps; left > 0; --left) {
@@ -71,6 +68,29 @@ template <class Wall>
     ++report.settlings;
   }
   report.solve.status = Status::max_iterations;
+  return report;
+}
+
+}  // namespace detail
+
+/// `wall` is composed on the mesh of the imaged shape, with the loads that act there as end values. Raises
+/// them in steps and stores the deformation of each, so that the mesh stays the image and its stresses
+/// balance the loads; then stores what is left, which each time is less by the stress over the stiffness. The
+/// wall is left in the equilibrium next to the image, `drift` away: what follows starts there;
+/// wall.body().laws().prestress() is what a Dynamics on the same mesh takes. The stresses are one equilibrium
+/// of the image; those of a body that was loaded from a shape free of stress (unloaded_shape) are another.
+/// Laws with a history have carried these stresses for ever: the wall is as stiff as after infinite time, and
+/// remembers that. A Dynamics then takes both:
+///   moving.laws().prestress(wall.body().laws().prestress());
+///   remember(moving.laws(), remembered(wall.laws()));  moving.start(wall.displacement(), v);
+template <class Wall>
+[[nodiscard]] PrestressReport prestress(Wall& wall, const PrestressOptions& options = {}) {
+  using Body = std::remove_cvref_t<decltype(wall.body())>;
+  static_assert(!std::is_same_v<typename Body::Form::Locking, FBar>,
+                "F-bar takes no prestress: it knows F at the centre of the unstressed cell alone");
+  if constexpr (has_history<Body>) begin_step(wall.laws(), std::numeric_limits<double>::infinity());
+  const PrestressReport report = detail::balanced_image(wall, options);
+  if constexpr (has_history<Body>) advance(wall.laws(), wall.body(), wall.unknowns());
   return report;
 }
 

@@ -4,6 +4,7 @@
 
 #include "tunica/core/expect.hpp"
 #include "tunica/core/unroll.hpp"
+#include "tunica/solid/fibres.hpp"
 #include "tunica/solid/isochoric_part.hpp"
 
 #include <array>
@@ -34,6 +35,14 @@ class Viscoelastic {
   template <class S>
   struct Point {
     std::array<S, own + 6 * (Terms + 1)> m{};
+    /// Those of the law stand first, as in Fibres.
+    static constexpr std::size_t families = fibre_families<PointOf<Law, S>>;
+    [[nodiscard]] Vector3<S> operator[](std::size_t family) const {
+      return {m[3 * family], m[3 * family + 1], m[3 * family + 2]};
+    }
+    void set(std::size_t family, const Vector3<S>& direction) {
+      for (std::size_t k = 0; k < 3; ++k) m[3 * family + k] = direction[k];
+    }
   };
 
   Viscoelastic(const Law& law, const std::array<Prony, Terms>& terms) : law_(law), terms_(terms) {
