@@ -30,6 +30,8 @@ struct ResidualInfo {
 /// columns of prescribed unknowns being those of a diagonal matrix; `pattern` is a matrix of A's
 /// pattern. `direction` announces the step dx that leaves the x of the last residual, and `residual` is
 /// told how far along it x is (or no_step), so that a problem with condensed unknowns can carry them along.
+/// A problem may also give its tangent as it is assembled, tangent_blocks(x): a solver that reads such
+/// matrices gets that one.
 template <class P>
 concept NonlinearProblem = requires(P problem, const Eigen::VectorXd& x, Eigen::VectorXd& r,
                                     SparseMatrix& A) {
@@ -166,13 +168,20 @@ class Newton {
  private:
   template <class Problem>
   bool factorise(Problem& problem, const Eigen::VectorXd& x) {
-    if (!analysed_ || A_.rows() != x.size()) {
-      A_ = problem.pattern();
-      solver_.analyse(A_);
+    if constexpr (requires { solver_.factorise(problem.tangent_blocks(x)); }) {
+      const auto& A = problem.tangent_blocks(x);  // as it is assembled
+      if (!analysed_) solver_.analyse(A);
       analysed_ = true;
+      fresh_enough_ = solver_.factorise(A).status == Status::converged;
+    } else {
+      if (!analysed_ || A_.rows() != x.size()) {
+        A_ = problem.pattern();
+        solver_.analyse(A_);
+        analysed_ = true;
+      }
+      problem.tangent(x, A_);
+      fresh_enough_ = solver_.factorise(A_).status == Status::converged;
     }
-    problem.tangent(x, A_);
-    fresh_enough_ = solver_.factorise(A_).status == Status::converged;
     return fresh_enough_;
   }
 

@@ -18,6 +18,7 @@
 
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace tunica::solid {
@@ -190,30 +191,18 @@ class Body {
   /// unknowns get a positive diagonal and zeros elsewhere.
   void tangent(const Eigen::VectorXd& u, const Eigen::VectorXd& p, const TangentParts& parts,
                la::SparseMatrix& A) const {
-    la::BlockMatrix<per_node>& K = tangent_.blocks();
-    K.set_zero();
-    if (parts.stiffness != 0) inside_.add_tangent(u, parts.stiffness, K);
-    if (parts.mass != 0) mass_.add_to(parts.mass, K);
-    bool loaded = false;
-    for (std::size_t k = 0; k < pressures_.size(); ++k) {
-      const double value = p[static_cast<Eigen::Index>(k)];
-      if (value == 0) continue;
-      loaded = true;
-      for (Index face = 0; face < pressures_[k].face_count(); ++face) {
-        const Index e = pressures_[k].cell(face);
-        auto unit = pressures_[k].unit_stiffness(face, reference(e) + gather(e, u));
-        if (parts.symmetric_load) unit = (0.5 * (unit + unit.transpose())).eval();
-        add_matrix(e, -value * parts.stiffness * unit, K);
-      }
-    }
-    for (const auto& support : supports_)
-      support.for_each_stiffness(parts.stiffness, parts.damping,
-                                 [&](Index e, const ElementMatrix& S) { add_matrix(e, S, K); });
-    if constexpr (per_node == 4)
-      if (parts.stiffness == 0)  // the mass alone does not see pressures: it leaves them as they are
-        for (Index n = 0; n < mesh_.node_count(); ++n) K.block(K.find(n, n))[per_node * per_node - 1] = 1;
-    tangent_.constrain(fixed_);
-    tangent_.columns(symmetric && (!loaded || parts.symmetric_load), A);
+    const bool alike = assemble(u, p, parts);
+    tangent_.columns(alike, A);
+  }
+  /// The same in the blocks that it is assembled in, both triangles; they stay until the next tangent. With
+  /// pressures at the nodes, which stand behind all displacements, it is what no solver reads.
+  [[nodiscard]] const auto& tangent_blocks(const Eigen::VectorXd& u, const Eigen::VectorXd& p,
+                                           const TangentParts& parts) const {
+    assemble(u, p, parts);
+    if constexpr (per_node == 3)
+      return std::as_const(tangent_).blocks();
+    else
+      return tangent_;
   }
 
   /// Strain energy [J] at u, that of the springs, and kinetic energy at velocity v.
@@ -246,6 +235,34 @@ class Body {
 
  private:
   using ElementMatrix = Eigen::Matrix<double, 3 * C::nodes, 3 * C::nodes>;
+
+  /// The tangent in blocks; whether it is symmetric.
+  bool assemble(const Eigen::VectorXd& u, const Eigen::VectorXd& p, const TangentParts& parts) const {
+    la::BlockMatrix<per_node>& K = tangent_.blocks();
+    K.set_zero();
+    if (parts.stiffness != 0) inside_.add_tangent(u, parts.stiffness, K);
+    if (parts.mass != 0) mass_.add_to(parts.mass, K);
+    bool loaded = false;
+    for (std::size_t k = 0; k < pressures_.size(); ++k) {
+      const double value = p[static_cast<Eigen::Index>(k)];
+      if (value == 0) continue;
+      loaded = true;
+      for (Index face = 0; face < pressures_[k].face_count(); ++face) {
+        const Index e = pressures_[k].cell(face);
+        auto unit = pressures_[k].unit_stiffness(face, reference(e) + gather(e, u));
+        if (parts.symmetric_load) unit = (0.5 * (unit + unit.transpose())).eval();
+        add_matrix(e, -value * parts.stiffness * unit, K);
+      }
+    }
+    for (const auto& support : supports_)
+      support.for_each_stiffness(parts.stiffness, parts.damping,
+                                 [&](Index e, const ElementMatrix& S) { add_matrix(e, S, K); });
+    if constexpr (per_node == 4)
+      if (parts.stiffness == 0)  // the mass alone does not see pressures: it leaves them as they are
+        for (Index n = 0; n < mesh_.node_count(); ++n) K.block(K.find(n, n))[per_node * per_node - 1] = 1;
+    tangent_.constrain(fixed_);
+    return symmetric && (!loaded || parts.symmetric_load);
+  }
 
   template <class Vector>
   void add_vector(Index e, const Vector& fe, Eigen::VectorXd& f) const {

@@ -20,8 +20,7 @@
 
 namespace tunica::solid {
 
-/// M a + f_int(u) + supports = f, from t^n to t^{n+1} with any dt from step to step. Loads are those at
-/// t^{n+1}.
+/// M a + f_int(u) + supports = f, from t^n to t^{n+1} with any dt. Loads are those at t^{n+1}.
 ///   Dynamics wall{mesh, Hyperelastic{Yeoh{...}, Quadratic{...}}, 1100.0};
 ///   wall.fix(mesh.patch("ends"));  wall.interface(mesh.patch("inner"));
 ///   wall.save();                                     // t^n
@@ -222,6 +221,11 @@ class Dynamics {
   struct Problem {
     Dynamics& d;
     double dt;
+    typename Body<C, Material>::TangentParts parts{
+        .stiffness = d.scheme_.af,
+        .mass = d.scheme_.am / (d.scheme_.beta * dt * dt),
+        .damping = d.scheme_.af * d.scheme_.gamma / (d.scheme_.beta * dt),
+        .symmetric_load = Solver::symmetric};
 
     [[nodiscard]] Eigen::VectorXd acceleration(const Eigen::VectorXd& u) const {
       const State& n = d.state_;
@@ -258,12 +262,10 @@ class Dynamics {
     }
     void direction(const Eigen::VectorXd& du) { d.body_.direction(d.scheme_.af * du); }
     void tangent(const Eigen::VectorXd& u, la::SparseMatrix& A) {
-      d.body_.tangent(between(d.state_.u, u), between(d.state_.p, d.pressure_),
-                      {.stiffness = d.scheme_.af,
-                       .mass = d.scheme_.am / (d.scheme_.beta * dt * dt),
-                       .damping = d.scheme_.af * d.scheme_.gamma / (d.scheme_.beta * dt),
-                       .symmetric_load = Solver::symmetric},
-                      A);
+      d.body_.tangent(between(d.state_.u, u), between(d.state_.p, d.pressure_), parts, A);
+    }
+    [[nodiscard]] const auto& tangent_blocks(const Eigen::VectorXd& u) {
+      return d.body_.tangent_blocks(between(d.state_.u, u), between(d.state_.p, d.pressure_), parts);
     }
     [[nodiscard]] la::SparseMatrix pattern() const { return d.body_.pattern(); }
   };

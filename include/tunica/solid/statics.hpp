@@ -97,9 +97,8 @@ class Statics {
   /// Whether the loads are reached.
   [[nodiscard]] bool done() const { return load_ >= 1; }
 
-  /// The next load step that holds, with as many cuts as it takes; not beyond the load `limit`. `diverged`
-  /// (or the status of Newton) if the steps become too small; displacement() is then the last equilibrium
-  /// that was found.
+  /// The next load step that holds, with as many cuts as it takes; not beyond the load `limit`. `diverged` (or
+  /// Newton's status) if the steps become too small; displacement() is then the last equilibrium found.
   StaticsStep step(double limit = 1) {
     StaticsStep report{.load = load_};
     double length = std::min(1.0, step_);
@@ -244,6 +243,9 @@ class Statics {
     }
     void direction(const Eigen::VectorXd& du) { statics.direction(du); }
     void tangent(const Eigen::VectorXd& u, la::SparseMatrix& A) { statics.tangent(u, load, A); }
+    [[nodiscard]] const auto& tangent_blocks(const Eigen::VectorXd& u) {
+      return statics.body_.tangent_blocks(u, statics.pressures(load), {.symmetric_load = Solver::symmetric});
+    }
     [[nodiscard]] la::SparseMatrix pattern() const { return statics.body_.pattern(); }
   };
 
