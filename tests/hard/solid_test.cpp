@@ -95,7 +95,8 @@ TEST_SUITE("hard") {
       CHECK(report.solve.iterations <= 10);
     }
     // What is left of the compressibility falls like 1/kappa.
-    CHECK(stretches[2] - stretches[4] == doctest::Approx(0.1 * (stretches[1] - stretches[4])).epsilon(0.05));
+    CHECK(stretches[2] - stretches[4] ==
+          doctest::Approx(0.1 * (stretches[1] - stretches[4])).epsilon(0.05).scale(0));
     CHECK(std::abs(stretches[4] - 1.10) < 0.01 * 0.10);
   }
 

@@ -195,7 +195,7 @@ TEST_SUITE("unit") {
     double loss = 0;
     for (const auto& [ratio, time] : terms)
       loss += 2 * neo_hooke.c10 * ratio * w * time / (1 + w * w * time * time);
-    CHECK(work == doctest::Approx(std::numbers::pi * loss * a * a).epsilon(1e-3));
+    CHECK(work == doctest::Approx(std::numbers::pi * loss * a * a).epsilon(1e-3).scale(0));
 
     Random random;
     for_each_inside([&](const auto& inside, const auto& data) {
