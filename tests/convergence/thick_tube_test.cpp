@@ -53,12 +53,37 @@ TEST_SUITE("convergence") {
     const test::ThickTube tube;
     for (const double l : {1.01, 1.05, 1.1, 1.2, 1.5})
       CHECK(tube.pressure_by_quadrature(l) == doctest::Approx(tube.pressure(l)).epsilon(1e-11));
-    CHECK(tube.pressure(1.05) == doctest::Approx(14707.8055923).epsilon(1e-10));
-    CHECK(tube.pressure(1.10) == doctest::Approx(36133.6801743).epsilon(1e-10));
-    CHECK(tube.stretch(16e3) == doctest::Approx(1.053778941042).epsilon(1e-11));
+    constexpr struct {
+      double stretch, pressure;  // [-], [Pa]
+    } fibrous[] = {{1.01, 2804.2867862},   {1.02, 5595.6446477},   {1.03, 8459.8522530},
+                   {1.05, 14707.8055923},  {1.08, 26316.7080742},  {1.10, 36133.6801743},
+                   {1.15, 70034.0338000},  {1.20, 119554.0527456}, {1.30, 270545.6486196},
+                   {1.40, 491558.3366009}, {1.50, 778726.3941859}},
+      rubber[] = {{1.01, 2788.8014053},  {1.02, 5474.9454392},  {1.05, 12960.4560514}, {1.10, 23754.8985727},
+                  {1.20, 40408.4460223}, {1.30, 52326.0851795}, {1.50, 67448.4293313}, {2.0, 82812.0738630},
+                  {3.0, 89462.8262768},  {5.0, 91051.9196551}};
+    for (const auto& [l, p] : fibrous) CHECK(std::abs(tube.pressure(l) - p) < 1e-6);
+    for (const auto& [l, p] : rubber) CHECK(std::abs(test::ThickTube{.c20 = 0}.pressure(l) - p) < 1e-6);
+    CHECK(std::abs(tube.stretch(16e3) - 1.053778941042) < 1e-11);
+    // s_rr, s_tt and s_zz through the wall at an inner stretch of 1.10 [kPa]
+    constexpr struct {
+      double R, rr, tt, zz;  // [mm], [kPa]
+    } profile[] = {{5.0, -36.133680, 202.465896, 71.829929},
+                   {5.375, -23.336949, 163.916450, 62.491393},
+                   {5.75, -13.627823, 137.722862, 56.481207},
+                   {6.125, -6.052043, 119.307645, 52.528847},
+                   {6.5, 0, 105.954523, 49.878313}};
+    for (const auto& at : profile) {
+      const double R = 1e-3 * at.R, r = std::sqrt(R * R + (1.1 * 1.1 - 1) * tube.inner * tube.inner);
+      const auto s = tube.stress_at(r, 1.1);
+      CHECK(std::abs(1e-3 * s.rr - at.rr) < 1e-6);
+      CHECK(std::abs(1e-3 * s.tt - at.tt) < 1e-6);
+      CHECK(std::abs(1e-3 * s.zz - at.zz) < 1e-6);
+    }
   }
 
-  TEST_CASE("solid: thick tube within 1 percent with four Hex8 through the wall") {
+  TEST_CASE(
+      "solid: thick tube within a tenth of a percent in the limit of kappa with four Hex8 through the wall") {
     const test::ThickTube tube;
     const double kappa = 1000 * 2 * tube.c10;
     for (const double l : {1.05, 1.10}) {
@@ -75,9 +100,9 @@ TEST_SUITE("convergence") {
       MESSAGE("inner stretch " << l << " at " << p << " Pa: kappa/mu 1e3 " << s1 << " (pressure off by "
                                << errors(s1) << " %), 1e4 " << s2 << " (" << errors(s2)
                                << " %), extrapolated " << limit << " (" << errors(limit) << " %)");
-      CHECK(std::abs(errors(s1)) < 1);
-      CHECK(std::abs(errors(s2)) < 1);
-      CHECK(std::abs(s1 - l) < 0.01 * (l - 1));
+      CHECK(std::abs(errors(s1)) < 0.3);  // of which kappa alone costs 0.16 %
+      CHECK(std::abs(errors(s2)) < 0.1);
+      CHECK(std::abs(errors(limit)) < 0.1);
     }
   }
 
@@ -85,8 +110,9 @@ TEST_SUITE("convergence") {
     const test::ThickTube tube;
     const double l = 1.10, p = tube.pressure(l);
     std::vector<double> errors;
-    for (const int n : {1, 2, 4, 8}) {
-      const auto ring = inflate(tube, p, 1e6 * 2 * tube.c10, n, 4 * n);
+    for (const int n : {1, 2, 4, 8, 16}) {
+      // At kappa/mu = 1e6 kappa alone costs 1e-7 of the stretch, a tenth of the last error.
+      const auto ring = inflate(tube, p, 1e8 * 2 * tube.c10, n, 4 * n);
       REQUIRE(ring.report);
       errors.push_back(std::abs(ring.inner_stretch - l));
     }
@@ -94,7 +120,7 @@ TEST_SUITE("convergence") {
       const double order = std::log2(errors[k - 1] / errors[k]);
       MESSAGE("radial cells " << (1 << k) << ": error of the inner stretch " << errors[k] << ", order "
                               << order);
-      if (k > 1) CHECK(order == doctest::Approx(2).epsilon(0.1));
+      if (k > 2) CHECK(std::abs(order - 2) < 0.1);
     }
   }
 
