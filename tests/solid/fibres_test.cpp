@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "support/laws.hpp"
+#include "tunica/meshing/box.hpp"
 #include "tunica/meshing/tube.hpp"
 #include "tunica/solid/fibre_field.hpp"
 #include "tunica/solid/fibre_helix.hpp"
@@ -14,9 +15,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <vector>
 
 using namespace tunica;
 
@@ -295,5 +298,90 @@ TEST_SUITE("unit") {
                  return solid::layered_fibres<2>({0, 2}, {good, other});
                }),
                "cell 1: no fibres for layer 2"));
+  }
+
+  TEST_CASE("solid: fibres about lines that bend sharply or fork or pass through a cell") {
+    // A corner of 90 degrees and one of 170, and a fork: unit vectors everywhere off the lines.
+    const auto line = [](std::initializer_list<Vec3> points) {
+      Points<3> p(3, static_cast<Eigen::Index>(points.size()));
+      Eigen::Index k = 0;
+      for (const Vec3& x : points) p.col(k++) = x;
+      return p;
+    };
+    const double back = 170 * degree;
+    const Vec3 o(0, 0, 0);
+    const std::vector<std::vector<Points<3>>> trees{
+        {line({Vec3(-10, 0, 0), o, Vec3(0, 10, 0)})},
+        {line({Vec3(-10, 0, 0), o, Vec3(10 * std::cos(back), 10 * std::sin(back), 0)})},
+        {line({Vec3(-10, 0, 0), o}), line({o, Vec3(7, 7, 0)}), line({o, Vec3(7, -7, 0)})}};
+    const auto box = meshing::box_hexes(
+        meshing::Block{.cells = {8, 8, 4}, .lo = Vec3(-4, -4.1, -2.2), .hi = Vec3(4.2, 4, 2)});
+    for (const auto& tree : trees) {
+      const auto field = solid::helical_fibres(box, solid::CentreLines(tree), 35 * degree);
+      CHECK(refusal([&] { return solid::checked(field, box.cell_count()); }).empty());
+      for (Index c = 0; c < box.cell_count(); ++c) {
+        const auto at = solid::CentreLines(tree).at(solid::cell_middle(box, c));
+        const Vec3 a = field.family[0].col(c);
+        CHECK(a.dot(at.around) == doctest::Approx(std::cos(35 * degree)).epsilon(1e-12));
+        CHECK(std::abs(a.dot(at.outward)) < 1e-14);
+      }
+    }
+    // Round the outside of the corner of 90 degrees the frame turns evenly: no jump from cell to cell.
+    const solid::CentreLines corner(trees[0]);
+    Vec3 before = corner.at(Vec3(1, -1, 0) + Vec3(-3, 0, 0)).along;
+    double jump = 0;
+    for (double t = -3; t < 3; t += 0.01) {
+      const Vec3 now = corner.at(Vec3(1, -1, 0) + (t < 0 ? Vec3(t, 0, 0) : Vec3(0, t, 0))).along;
+      jump = std::max(jump, (now - before).norm());
+      before = now;
+    }
+    MESSAGE("largest turn of the frame between points 0.01 apart: " << jump);
+    CHECK(jump < 0.02);
+    // On the line to the last bits there is no direction, and where it turns straight back neither.
+    const solid::CentreLines straight({line({Vec3(-1, 3, 7), Vec3(11, 3, 7)})});
+    for (const double off : {0.0, 1e-16, -8e-16}) {
+      const auto at = straight.at(Vec3(5, 3 + off, 7));
+      CHECK(at.around.norm() == 0);
+      CHECK(at.outward.norm() == 0);
+      CHECK(at.along.norm() == doctest::Approx(1));
+    }
+    CHECK(straight.at(Vec3(5, 3 + 1e-9, 7)).outward.dot(Vec3(0, 1, 0)) == doctest::Approx(1));
+    CHECK(straight.at(Vec3(5, std::nan(""), 7)).around.norm() == 0);
+    CHECK(says(refusal([&] {
+                 Points<3> broken = trees[0][0];
+                 broken(1, 1) = std::nan("");
+                 return solid::CentreLines({broken});
+               }),
+               "line 0 has no direction behind point 0"));
+    for (const std::vector<double>& radii :
+         {std::vector{2.0, 1.0}, {1.0, 1.0}, {-1.0, 2.0}, {1.0, std::nan("")}})
+      CHECK(says(refusal([&] { return solid::radial_layers(box, straight, radii); }),
+                 "not above the one before"));
+    CHECK(says(refusal([&] { return solid::helical_fibres(box, straight, std::nan("")); }),
+               "cell 0 has an angle that is not a number"));
+  }
+
+  TEST_CASE("solid: fields of fibres with parts of a frame or with infinities are refused") {
+    auto frame = solid::uniform_fibres<3>(4, {Vec3(1, 0, 0), Vec3(0, 2e-9, 0), Vec3(0, 0, 3e9)});
+    CHECK(solid::checked(frame, 4, {.frame = true})[2].m[4] == 1);
+    frame.family[1].col(2).setZero();
+    CHECK(says(refusal([&] { return solid::checked(frame, 4, {.frame = true, .gaps = true}); }),
+               "cell 2, family 2: an axis is missing beside others"));
+    for (auto& f : frame.family) f.col(2).setZero();
+    CHECK(refusal([&] { return solid::checked(frame, 4, {.frame = true, .gaps = true}); }).empty());
+    const double infinity = std::numeric_limits<double>::infinity();
+    frame.family[0].col(1) = Vec3(infinity, 0, 0);
+    CHECK(says(refusal([&] { return solid::checked(frame, 4, {.gaps = true}); }),
+               "cell 1, family 1: a direction that is not a number"));
+    CHECK(says(refusal([&] { return solid::uniform_fibres<1>(2, {Vec3(infinity, 0, 0)}); }),
+               "has no direction"));
+    CHECK(says(refusal([&] { return solid::uniform_fibres<1>(2, {Vec3(0, std::nan(""), 0)}); }),
+               "has no direction"));
+    frame.family[1].resize(3, 3);
+    CHECK(says(refusal([&] { return solid::checked(frame, 4); }), "family 2 has 3 directions"));
+    CHECK(says(refusal([&] {
+                 return solid::layered_fibres<1>({0, -1}, {solid::uniform_fibres<1>(2, {Vec3(1, 0, 0)})});
+               }),
+               "cell 1: no fibres for layer -1"));
   }
 }

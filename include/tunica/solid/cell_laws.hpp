@@ -6,6 +6,7 @@
 #include "tunica/core/types.hpp"
 #include "tunica/solid/cell_data.hpp"
 #include "tunica/solid/formulation.hpp"
+#include "tunica/solid/parameters.hpp"
 
 #include <Eigen/Core>
 
@@ -15,7 +16,8 @@
 
 namespace tunica::solid {
 
-/// Points: of the quadrature of a cell.
+/// Points: of the quadrature of a cell. InputError names a parameter of a law that cannot be: see
+/// check_parameters.
 template <class Material, int Points>
 class CellLaws {
  public:
@@ -25,7 +27,9 @@ class CellLaws {
   CellLaws(const Material& material, std::vector<Index> region, Index cell_count)
       : region_(std::move(region)),
         cell_count_(static_cast<std::size_t>(cell_count)),
-        materials_(1, material) {}
+        materials_(1, material) {
+    check_parameters(material);
+  }
 
   /// The law of a cell: that of its region, or the one given at first.
   [[nodiscard]] const Material& material(Index cell) const { return materials_[number(cell)]; }
@@ -39,6 +43,7 @@ class CellLaws {
   /// Another law of the same kind for a region.
   void material(Index region, const Material& law) {
     TUNICA_EXPECT(region >= 0, "regions are numbered from 0");
+    check_parameters(law);
     const auto r = static_cast<std::size_t>(region);
     if (r >= materials_.size()) materials_.resize(r + 1, materials_.front());
     materials_[r] = law;

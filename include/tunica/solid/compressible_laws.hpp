@@ -4,6 +4,7 @@
 
 #include "tunica/core/unroll.hpp"
 #include "tunica/solid/material.hpp"
+#include "tunica/solid/parameters.hpp"
 #include "tunica/solid/three_terms.hpp"
 
 #include <cmath>
@@ -16,6 +17,11 @@ namespace tunica::solid {
 struct CompressibleNeoHooke {
   double mu;      // shear modulus [Pa]
   double lambda;  // Lame's first parameter [Pa]; the bulk modulus is lambda + 2/3 mu
+
+  void check() const {
+    require_not_negative("CompressibleNeoHooke", "mu", mu);
+    require_not_negative("CompressibleNeoHooke", "lambda + 2/3 mu", lambda + 2. / 3 * mu);
+  }
 
   template <class S>
   [[nodiscard]] S energy(const Tensor<S>& F) const {
@@ -71,6 +77,11 @@ struct CompressibleNeoHooke {
 struct StVenantKirchhoff {
   double mu;      // shear modulus [Pa]
   double lambda;  // Lame's first parameter [Pa]
+
+  void check() const {
+    require_not_negative("StVenantKirchhoff", "mu", mu);
+    require_not_negative("StVenantKirchhoff", "lambda + 2/3 mu", lambda + 2. / 3 * mu);
+  }
 
   template <class S>
   [[nodiscard]] S energy(const Tensor<S>& F) const {

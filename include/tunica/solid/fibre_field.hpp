@@ -69,6 +69,9 @@ template <std::size_t N>
       a[k] = vec::divided(a[k], length);
       vec::set_column(field.family[k], c, a[k]);
     }
+    if (options.frame && missing > 0 && missing < N)
+      for (std::size_t k = 0; k < N; ++k)
+        if (vec::squared(a[k]) == 0) refuse(k, "an axis is missing beside others");
     for (std::size_t k = 0; options.frame && missing == 0 && k < N; ++k)
       for (std::size_t l = 0; l < k; ++l)
         if (!(std::abs(vec::dot(a[k], a[l])) <= options.tolerance))
@@ -77,7 +80,7 @@ template <std::size_t N>
   return field;
 }
 
-/// The same directions in every cell; of any length but 0. MeshError if one has none.
+/// The same directions in every cell; of any length but 0. MeshError if one has none or is not a number.
 template <std::size_t N>
 [[nodiscard]] FibreField<N> uniform_fibres(Index cell_count, const std::array<Vec3, N>& directions) {
   FibreField<N> field;

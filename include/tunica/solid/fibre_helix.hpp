@@ -20,7 +20,7 @@ namespace tunica::solid {
 
 /// Unit vectors at a point of a vessel, right-handed: along = outward x around.
 struct VesselFrame {
-  Vec3 outward, around, along;
+  Vec3 outward{0, 0, 0}, around{0, 0, 0}, along{0, 0, 0};
   double radius = 0;  // distance from the centre line, in its unit
 };
 
@@ -54,7 +54,7 @@ class CentreLines {
     }
   }
 
-  /// Radius 0 and no directions on the line itself.
+  /// Zeros for outward and around on the line itself, to rounding, and where it turns straight back.
   [[nodiscard]] VesselFrame at(const Vec3& x) const {
     double least = std::numeric_limits<double>::infinity();
     Vec3 foot(0, 0, 0), tangent(0, 0, 0);
@@ -71,7 +71,10 @@ class CentreLines {
     VesselFrame f;
     f.along = vec::unit(tangent);
     const Vec3 off = vec::minus(x, foot);
-    f.outward = vec::unit(vec::along(off, -vec::dot(off, f.along), f.along));
+    const Vec3 across = vec::along(off, -vec::dot(off, f.along), f.along);
+    constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();  // of x and foot: no direction
+    if (vec::squared(across) > rounding * rounding * std::max(vec::squared(x), vec::squared(foot)))
+      f.outward = vec::unit(across);
     f.around = vec::cross(f.along, f.outward);
     f.radius = std::sqrt(least);
     return f;
@@ -105,7 +108,8 @@ template <mesh::Cell C>
     const double a = angle[static_cast<std::size_t>(c)];
     if (!(vec::squared(at.around) > 0.5) || !std::isfinite(a))
       throw MeshError("fibres: cell " + std::to_string(c) +
-                      (std::isfinite(a) ? " lies on the centre line" : " has an angle that is not a number"));
+                      (std::isfinite(a) ? " lies on the centre line, or where it turns straight back"
+                                        : " has an angle that is not a number"));
     const Vec3 around = vec::scaled(std::cos(a), at.around);
     vec::set_column(field.family[0], c, vec::along(around, std::sin(a), at.along));
     vec::set_column(field.family[1], c, vec::along(around, -std::sin(a), at.along));
@@ -136,10 +140,14 @@ template <mesh::Cell C>
 
 /// Layers of a round vessel: cells nearer to the centre line than radii[0] are in layer 0, those nearer than
 /// radii[1] in layer 1, and so on; all others in the last one, radii.size(). radii rise, in the unit of the
-/// mesh.
+/// mesh; MeshError names the first that does not.
 template <mesh::Cell C>
 [[nodiscard]] std::vector<Index> radial_layers(const mesh::Mesh<C, 3>& mesh, const CentreLines& lines,
                                                const std::vector<double>& radii) {
+  for (std::size_t k = 0; k < radii.size(); ++k)
+    if (!(radii[k] > (k > 0 ? radii[k - 1] : 0)))
+      throw MeshError("layers: radius " + std::to_string(k) + " is " + std::to_string(radii[k]) +
+                      ", not above the one before it");
   std::vector<Index> layer;
   layer.reserve(static_cast<std::size_t>(mesh.cell_count()));
   for (Index c = 0; c < mesh.cell_count(); ++c) {

@@ -5,6 +5,7 @@
 #include "tunica/core/select.hpp"
 #include "tunica/solid/energy.hpp"
 #include "tunica/solid/fibres.hpp"
+#include "tunica/solid/parameters.hpp"
 
 #include <array>
 #include <cmath>
@@ -17,14 +18,18 @@ namespace tunica::solid {
 /// stress are continuous there; the second derivative jumps from 0 to k1, never below 0.
 struct FibreEnergy {
   double k1;  // [Pa]
-  double k2;  // stiffening [-], not 0
+  double k2;  // stiffening [-]; 0: k1/2 E^2
 
+  /// As k1/2 E^2 (exp(x) - 1)/x with x = k2 E^2; a series of it for small x.
   template <class S>
   [[nodiscard]] S energy(const S& strain) const {
     using std::exp;
     const S E =
         select(strain > S(0), strain, S(0));  // a branch for every lane; its derivatives vanish as well
-    return S(k1 / (2 * k2)) * (exp(S(k2) * E * E) - S(1));
+    const S x = S(k2) * E * E;
+    const auto small = x < S(1e-3);
+    const S few = S(1) + x * (S(0.5) + x * (S(1. / 6) + x * (S(1. / 24) + x * S(1. / 120))));
+    return S(0.5 * k1) * E * E * select(small, few, (exp(x) - S(1)) / select(small, S(1), x));
   }
   template <class S>
   struct Slope {
@@ -37,6 +42,10 @@ struct FibreEnergy {
     const S E = select(tension, strain, S(0)), k2E2 = S(k2) * E * E, k = S(k1) * exp(k2E2);
     return {.first = k * E, .second = select(tension, k * (S(1) + k2E2 + k2E2), S(0))};
   }
+  void check(const char* law) const {
+    require_not_negative(law, "k1", k1);
+    require_not_negative(law, "k2", k2);
+  }
 };
 
 /// Phi = c/2 (I1 - 3) + sum_{4,6} k1/(2 k2) (exp(k2 E^2) - 1) with E = I_i - 1, where E > 0   [HGO00].
@@ -46,6 +55,11 @@ struct HolzapfelGasserOgden {
   double c;   // [Pa]
   double k1;  // [Pa]
   double k2;  // [-]
+
+  void check() const {
+    require_not_negative("HolzapfelGasserOgden", "c", c);
+    FibreEnergy{k1, k2}.check("HolzapfelGasserOgden");
+  }
 
   static constexpr std::array reads{Invariant::I1, Invariant::I4, Invariant::I6};
   static constexpr std::array curved{Invariant::I4, Invariant::I6};
@@ -79,6 +93,13 @@ struct GasserOgdenHolzapfel {
   double k2;     // [-]
   double kappa;  // dispersion [-], in [0, 1/3]
 
+  void check() const {
+    require_not_negative("GasserOgdenHolzapfel", "c", c);
+    FibreEnergy{k1, k2}.check("GasserOgdenHolzapfel");
+    require_parameter(kappa >= 0 && kappa <= 1. / 3, "GasserOgdenHolzapfel", "kappa", kappa,
+                      "expected a dispersion in [0, 1/3]");
+  }
+
   static constexpr std::array reads{Invariant::I1, Invariant::I4, Invariant::I6};
   template <class S>
   using Point = Fibres<S, 2>;
@@ -108,7 +129,8 @@ struct GasserOgdenHolzapfel {
  private:
   template <class S>
   [[nodiscard]] S strain(const std::array<S, 3>& I, std::size_t k) const {
-    return S(kappa) * (I[0] - S(3)) + S(1 - 3 * kappa) * (I[k] - S(1));
+    const S E = S(kappa) * (I[0] - S(3)) + S(1 - 3 * kappa) * (I[k] - S(1));
+    return select(I[k] > S(0), E, S(0));  // no family, no fibres spread about it
   }
 };
 

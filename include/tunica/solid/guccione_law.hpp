@@ -5,6 +5,7 @@
 #include "tunica/core/unroll.hpp"
 #include "tunica/solid/fibres.hpp"
 #include "tunica/solid/material.hpp"
+#include "tunica/solid/parameters.hpp"
 
 #include <array>
 #include <cmath>
@@ -22,6 +23,12 @@ struct Guccione {
   double bfs;  // shear with the fibre [-]
 
   static constexpr bool orthogonal_frame = true;
+  void check() const {
+    require_not_negative("Guccione", "C", C);
+    require_not_negative("Guccione", "bf", bf);
+    require_not_negative("Guccione", "bt", bt);
+    require_not_negative("Guccione", "bfs", bfs);
+  }
   template <class S>
   using Point = Fibres<S, 3>;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/solid/energy.hpp"
+#include "tunica/solid/parameters.hpp"
 
 #include <array>
 #include <cmath>
@@ -12,6 +13,8 @@ namespace tunica::solid {
 /// Phi = c10 (I1 - 3), shear modulus 2 c10.
 struct NeoHooke {
   double c10;  // [Pa]
+
+  void check() const { require_not_negative("NeoHooke", "c10", c10); }
 
   static constexpr std::array reads{Invariant::I1};
   static constexpr std::array<Invariant, 0> curved{};
@@ -30,6 +33,11 @@ struct NeoHooke {
 struct Yeoh {
   double c10;      // [Pa]
   double c20 = 0;  // [Pa]
+
+  void check() const {
+    require_not_negative("Yeoh", "c10", c10);
+    require_finite("Yeoh", "c20", c20);
+  }
 
   static constexpr std::array reads{Invariant::I1};
 
@@ -52,6 +60,12 @@ struct MooneyRivlin {
   double c10;  // [Pa]
   double c01;  // [Pa]
 
+  void check() const {
+    require_finite("MooneyRivlin", "c10", c10);
+    require_finite("MooneyRivlin", "c01", c01);
+    require_not_negative("MooneyRivlin", "c10 + c01", c10 + c01);
+  }
+
   static constexpr std::array reads{Invariant::I1, Invariant::I2};
   static constexpr std::array<Invariant, 0> curved{};
 
@@ -69,6 +83,11 @@ struct MooneyRivlin {
 struct Demiray {
   double mu;  // [Pa]
   double a;   // stiffening [-], not 0: that is NeoHooke{mu/2}
+
+  void check() const {
+    require_not_negative("Demiray", "mu", mu);
+    require_positive("Demiray", "a", a);
+  }
 
   static constexpr std::array reads{Invariant::I1};
 

@@ -6,17 +6,19 @@
 #include "tunica/core/unroll.hpp"
 #include "tunica/solid/fibres.hpp"
 #include "tunica/solid/isochoric_part.hpp"
+#include "tunica/solid/parameters.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <string>
 
 namespace tunica::solid {
 
 /// A branch: at first it adds `ratio` times the stress of the law, and forgets it in the time `time`.
 struct Prony {
   double ratio;  // [-], not negative
-  double time;   // [s], positive
+  double time;   // [s], positive; infinite: nothing is forgotten
 };
 
 /// S = S_law + J^-2/3 DEV[sum_i h_i],  dh_i/dt + h_i/time_i = ratio_i d/dt(J^2/3 S_law),  h_i = 0 at first,
@@ -24,6 +26,8 @@ struct Prony {
 /// stress after infinite time; at once it is 1 + sum ratio_i times as stiff. The update is exact where S_law
 /// is linear in time over a step, of second order else, and stable for every dt:
 ///   h <- e^-x h + ratio (1 - e^-x)/x (increment of J^2/3 S_law),  x = dt/time.
+/// The ratios are of the stress after infinite time: their sum has no bound. InputError names a branch with
+/// another ratio or time.
 /// A point holds what the law's holds, then that stress and the h_i at the start of the step. Isochoric: it
 /// stands where an isochoric law does,
 ///   Hyperelastic{Viscoelastic{yeoh, std::array{Prony{.ratio = 0.3, .time = 0.1}}}, Quadratic{...}}.
@@ -46,9 +50,17 @@ class Viscoelastic {
   };
 
   Viscoelastic(const Law& law, const std::array<Prony, Terms>& terms) : law_(law), terms_(terms) {
-    for (const Prony& t : terms_)
-      TUNICA_EXPECT(t.ratio >= 0 && t.time > 0, "a branch has a ratio not below 0 and a time above 0");
+    check();
     begin_step(0);
+  }
+  void check() const {
+    check_parameters(law_);
+    for (std::size_t i = 0; i < Terms; ++i) {
+      const std::string branch = "branch " + std::to_string(i + 1);
+      require_not_negative("Viscoelastic", (branch + ", ratio").c_str(), terms_[i].ratio);
+      require_parameter(terms_[i].time > 0, "Viscoelastic", (branch + ", time").c_str(), terms_[i].time,
+                        "expected a time above 0");
+    }
   }
 
   /// The law that is left when all is forgotten.

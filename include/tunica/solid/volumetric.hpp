@@ -5,6 +5,7 @@
 #include "tunica/core/select.hpp"
 #include "tunica/solid/energy.hpp"
 #include "tunica/solid/hyperelastic.hpp"
+#include "tunica/solid/parameters.hpp"
 
 #include <cmath>
 
@@ -20,9 +21,18 @@ struct Complement {
   S compliance;  // dJ/dp [1/Pa]
 };
 
+namespace detail {
+/// Infinity is for formulations that take complement(p).
+inline void check_kappa(const char* law, double kappa) {
+  require_parameter(kappa > 0, law, "kappa", kappa, "expected a bulk modulus above 0");
+}
+}  // namespace detail
+
 /// U = kappa/2 (J - 1)^2: linear in J, so a constrained pressure is exactly kappa (J - 1).
 struct Quadratic {
   double kappa;  // [Pa]
+
+  void check() const { detail::check_kappa("Quadratic", kappa); }
 
   template <class S>
   [[nodiscard]] S energy(const S& J) const {
@@ -47,6 +57,8 @@ struct Quadratic {
 struct Logarithmic {
   double kappa;  // [Pa]
 
+  void check() const { detail::check_kappa("Logarithmic", kappa); }
+
   template <class S>
   [[nodiscard]] S energy(const S& J) const {
     using std::log;
@@ -68,6 +80,8 @@ struct Logarithmic {
 /// U = kappa/4 (J^2 - 1 - 2 ln J): convex, unbounded at both ends   [SIMO91]
 struct SimoTaylor {
   double kappa;  // [Pa]
+
+  void check() const { detail::check_kappa("SimoTaylor", kappa); }
 
   template <class S>
   [[nodiscard]] S energy(const S& J) const {
