@@ -202,6 +202,7 @@ struct {
 } constexpr any_law;
 
 constexpr Hyperelastic pair{MooneyRivlin{.c10 = 0.4, .c01 = 0.2}, SimoTaylor{.kappa = 40}};
+constexpr Hyperelastic bent_pair{NeoHooke{.c10 = 0.4}, Logarithmic{.kappa = 40}};
 constexpr Hyperelastic wall{HolzapfelGasserOgden{.c = 1, .k1 = 2, .k2 = 0.8}, Quadratic{.kappa = 40}};
 
 std::size_t allocations = 0;  // of this program, by operator new
@@ -249,7 +250,14 @@ TEST_SUITE("unit") {
     };
     check("pointwise", against_duals<Kernel<C>>(neo_hooke));
     check("mean volume", against_duals<Kernel<C, MeanVolume>>(pair));
-    if constexpr (C::nodes != C::dim + 1) check("F-bar", against_duals<Kernel<C, FBar>>(pair));
+    if constexpr (C::nodes != C::dim + 1) {
+      check("F-bar", against_duals<Kernel<C, FBar>>(pair));
+      check("F-bar, its pressure apart", against_duals<Kernel<C, CentreVolume>>(pair));
+    }
+    if constexpr (C::nodes >= 9 && C::nodes != 10) {
+      check("linear volume", against_duals<Kernel<C, LinearVolume>>(pair));
+      check("linear volume, U'' as it comes", against_duals<Kernel<C, LinearVolume>>(bent_pair));
+    }
   }
 
   TEST_CASE("solid: kernels of fibre laws have their derivatives") {
@@ -295,39 +303,131 @@ TEST_SUITE("unit") {
     all(Kernel<mesh::Hex8, MeanVolume>{}, "Hex8, fibres, mean volume", wall);
     all(Kernel<mesh::Hex8, FBar>{}, "Hex8, Mooney-Rivlin, F-bar", pair);
     all(Kernel<mesh::Tet10>{}, "Tet10, fibres", wall);
+    all(Kernel<mesh::Hex20, LinearVolume>{}, "Hex20, fibres, linear volume", wall);
+    all(Kernel<mesh::Hex8, CentreVolume>{}, "Hex8, fibres, F-bar with its pressure apart", wall);
     all(Kernel<mesh::Quad4, FBar>{}, "Quad4, Mooney-Rivlin, F-bar", pair);
   }
 
-  TEST_CASE("solid: the kernel with a mean volume takes the pressure that Newton predicts") {
-    using K = Kernel<mesh::Hex8, MeanVolume>;
-    const State<K, double> at;
-    K::Tangent<double> exact, predicted, other;
-    K::tangent(pair, at.X, at.u, nullptr, exact);
-    K::tangent(pair, at.X, at.u, nullptr, exact.p, predicted);
-    K::tangent(pair, at.X, at.u, nullptr, exact.p + 7, other);
-    CHECK(exact.bulk == doctest::Approx(pair.volumetric.curvature(exact.theta)));
-    double same = 0, turned = 0;
-    for (int p = 0; p < K::Places::count; ++p)
-      for (int k = 0; k < 9; ++k) {
-        same = std::max(same, std::abs(predicted.K[p][k] - exact.K[p][k]));
-        turned = std::max(turned, std::abs(other.K[p][k] - exact.K[p][k]));
+  TEST_CASE("solid: kernels that keep pressures take those that Newton predicts") {
+    const auto check = [&]<class K>(K) {
+      const State<K, double> at;
+      typename K::template Tangent<double> exact, predicted, other;
+      K::tangent(pair, at.X, at.u, nullptr, exact);
+      auto p = exact.p;
+      K::tangent(pair, at.X, at.u, nullptr, p, predicted);
+      for (std::size_t k = 0; k < p.size(); ++k) p[k] += 7 - 3 * static_cast<double>(k);
+      K::tangent(pair, at.X, at.u, nullptr, p, other);
+      double same = 0, turned = 0, scale = 0;
+      for (int n = 0; n < K::Places::count; ++n)
+        for (int k = 0; k < 9; ++k) {
+          scale = std::max(scale, std::abs(exact.K[n][k]));
+          same = std::max(same, std::abs(predicted.K[n][k] - exact.K[n][k]));
+          turned = std::max(turned, std::abs(other.K[n][k] - exact.K[n][k]));
+        }
+      CHECK(same < 1e-14 * scale);
+      CHECK(turned > 0.1);
+      // What the pressures more leave in K is the derivative of their forces: sum_k (p_k - exact.p_k)
+      // slope_k.
+      constexpr double h = 1e-6;
+      for (int b = 0; b < K::nodes; b += 3) {
+        State<K, double> moved[2];
+        typename K::template Forces<double> f[2];
+        for (int side = 0; side < 2; ++side) {
+          moved[side].u[b][1] += side == 0 ? -h : h;
+          K::forces(pair, moved[side].X, moved[side].u, nullptr, f[side]);
+        }
+        for (int a = 0; a < K::nodes; ++a)
+          for (int i = 0; i < 3; ++i) {
+            double want = 0;
+            for (std::size_t k = 0; k < p.size(); ++k)
+              want += (p[k] - exact.p[k]) * (f[1].slope[k][a][i] - f[0].slope[k][a][i]) / (2 * h);
+            CHECK(std::abs(entry<K>(other, a, b, i, 1) - entry<K>(exact, a, b, i, 1) - want) < 1e-8 * scale);
+          }
+        // and the rates of the dilatation are its derivatives
+        for (std::size_t k = 0; k < p.size(); ++k)
+          CHECK((f[1].p[k] - f[0].p[k]) / (2 * h) == doctest::Approx([&] {
+                                                       double dp = 0;
+                                                       for (std::size_t j = 0; j < p.size(); ++j)
+                                                         dp += exact.gain(k, j) * exact.rate(j)[b][1];
+                                                       return dp;
+                                                     }())
+                                                         .epsilon(1e-6)
+                                                         .scale(1));
       }
-    CHECK(same < 1e-12);
-    CHECK(turned > 0.1);
-    // What 7 Pa more leave in K is 7 d2v/du2: the derivative of slope = dv/du.
-    constexpr double h = 1e-6;
-    for (int b = 0; b < 8; b += 3) {
-      State<K, double> moved[2];
-      K::Forces<double> f[2];
-      for (int side = 0; side < 2; ++side) {
-        moved[side].u[b][1] += side == 0 ? -h : h;
-        K::forces(pair, moved[side].X, moved[side].u, nullptr, f[side]);
-      }
-      for (int a = 0; a <= b; ++a)
-        for (int i = 0; i < 3; ++i)
-          CHECK(entry<K>(other, a, b, i, 1) - entry<K>(exact, a, b, i, 1) ==
-                doctest::Approx(7 * (f[1].slope[a][i] - f[0].slope[a][i]) / (2 * h)).epsilon(1e-6));
+    };
+    check(Kernel<mesh::Hex8, MeanVolume>{});
+    check(Kernel<mesh::Hex8, CentreVolume>{});
+    check(Kernel<mesh::Hex20, LinearVolume>{});
+  }
+
+  TEST_CASE("solid: F-bar of a pair has the same forces and tangent with its pressure apart") {
+    const auto check = [&]<class C>(C, const auto& law) {
+      using K = Kernel<C, CentreVolume>;
+      const State<K, double> at;
+      const auto data = fibres<std::remove_cvref_t<decltype(law)>, double, K::points>();
+      typename K::template Tangent<double> apart;
+      typename Kernel<C, FBar>::template Tangent<double> whole;
+      K::tangent(law, at.X, at.u, data.data(), apart);
+      Kernel<C, FBar>::tangent(law, at.X, at.u, data.data(), whole);
+      double worst = 0, scale = 0;
+      for (int n = 0; n < K::Places::count; ++n)
+        for (int k = 0; k < K::dim * K::dim; ++k) {
+          worst = std::max(worst, std::abs(apart.K[n][k] - whole.K[n][k]));
+          scale = std::max(scale, std::abs(whole.K[n][k]));
+        }
+      for (int a = 0; a < K::nodes; ++a)
+        for (int i = 0; i < K::dim; ++i) worst = std::max(worst, std::abs(apart.f[a][i] - whole.f[a][i]));
+      CHECK(worst < 1e-13 * scale);
+    };
+    check(mesh::Hex8{}, pair);
+    check(mesh::Hex8{}, wall);
+    check(mesh::Wedge6{}, pair);
+    check(mesh::Hex27{}, pair);
+    check(mesh::Quad4{}, pair);
+  }
+
+  TEST_CASE(
+      "solid: a linear volume sees a linear dilatation as it is and orders of it above as their means") {
+    using K = Kernel<mesh::Hex27, LinearVolume>;
+    State<K, double> at;  // u = (0, 0, (a + b.X) z) on a distorted cell: J = 1 + a + b.X where b_z = 0
+    for (int a = 0; a < 27; ++a) {
+      at.u[a][0] = at.u[a][1] = 0;
+      at.u[a][2] = 0.1 * at.X[a][2];
     }
+    K::Forces<double> f;
+    K::forces(pair, at.X, at.u, nullptr, f);
+    CHECK(f.theta[0] == doctest::Approx(1.1).epsilon(1e-14));
+    for (std::size_t k = 1; k < 4; ++k) CHECK(std::abs(f.theta[k]) < 1e-14);
+    const auto x = unit_cell<mesh::Hex27>();
+    for (std::size_t a = 0; a < 27; ++a)
+      for (int i = 0; i < 3; ++i) at.X[a][i] = x[a][static_cast<std::size_t>(i)] * (i + 1);
+    for (int a = 0; a < 27; ++a) at.u[a][2] = (0.1 + 0.2 * at.X[a][0] - 0.05 * at.X[a][1]) * at.X[a][2];
+    K::forces(pair, at.X, at.u, nullptr, f);
+    // modes sqrt(12) (x - 1/2) and sqrt(12) (y/2 - 1/2), z/3 alike
+    CHECK(f.theta[0] == doctest::Approx(1 + 0.1 + 0.2 * 0.5 - 0.05 * 1).epsilon(1e-14));
+    CHECK(f.theta[1] == doctest::Approx(0.2 / std::sqrt(12.)).epsilon(1e-13));
+    CHECK(f.theta[2] == doctest::Approx(-0.1 / std::sqrt(12.)).epsilon(1e-13));
+    CHECK(std::abs(f.theta[3]) < 1e-14);
+    for (std::size_t k = 0; k < 4; ++k)
+      CHECK(f.p[k] == doctest::Approx(0.5 * 40 * ([&] {
+                                        // U' = kappa/2 (J - 1/J) of SimoTaylor, projected by a rule of its
+                                        // own
+                                        double sum = 0;
+                                        constexpr int n = 400;
+                                        for (int i = 0; i < n; ++i)
+                                          for (int j = 0; j < n; ++j) {
+                                            const double s = (i + 0.5) / n, t = (j + 0.5) / n,
+                                                         J = 1.1 + 0.2 * s - 0.05 * 2 * t,
+                                                         mode = k == 0   ? 1
+                                                                : k == 1 ? std::sqrt(12.) * (s - 0.5)
+                                                                : k == 2 ? std::sqrt(12.) * (t - 0.5)
+                                                                         : 0;
+                                            sum += mode * (J - 1 / J) / (n * n);
+                                          }
+                                        return sum;
+                                      }()))
+                          .epsilon(1e-5)
+                          .scale(1));
   }
 
   TEST_CASE("solid: a plane element is a brick of unit depth held from moving across") {
@@ -393,6 +493,7 @@ TEST_SUITE("unit") {
     CHECK(silent(Kernel<mesh::Hex8>{}, wall) == 0);
     CHECK(silent(Kernel<mesh::Hex8, MeanVolume>{}, wall) == 0);
     CHECK(silent(Kernel<mesh::Hex27, FBar>{}, pair) == 0);
+    CHECK(silent(Kernel<mesh::Hex20, LinearVolume>{}, wall) == 0);
     CHECK(silent(Kernel<mesh::Tet10>{}, neo_hooke) == 0);
   }
 
@@ -427,6 +528,7 @@ TEST_SUITE("unit") {
     };
     check(Kernel<mesh::Hex8>{});
     check(Kernel<mesh::Hex8, MeanVolume>{});
+    check(Kernel<mesh::Hex20, LinearVolume>{});
     check(Kernel<mesh::Tet10>{});
   }
 

@@ -61,7 +61,7 @@ class Body {
   static_assert(C::dim == 3, "a solid body is made of cells in three dimensions");
 
  public:
-  using Form = Formulation<std::remove_const_t<Given>>;
+  using Form = Formulation<std::remove_const_t<Given>, C>;
   using Law = typename Form::Law;
   static_assert(detail::law_is_complete<Law>);
   using Inside = typename detail::InteriorOf<C, Law, typename Form::Locking>::type;

@@ -156,17 +156,13 @@ template <mesh::Cell C, class Rule, class S>
   return at;
 }
 
-/// Volume of the element with nodes x: the current one of x = X + u [m^dim].
+/// det dx/dxi at a point of a rule: over that of X it is J.
 template <mesh::Cell C, class Rule, class S>
-[[nodiscard]] TUNICA_INLINE S element_volume(const NodeVectors<S, C>& x) {
-  S volume(0);
-  for (std::size_t q = 0; q < Rule::size; ++q) {
-    S det;
-    (void)detail::adjugate(detail::local_gradient<C>(x, fem::Tables<fem::Lagrange<C>, Rule>::gradients[q]),
-                           det);
-    volume += det * S(Rule::weights[q]);
-  }
-  return volume;
+[[nodiscard]] TUNICA_INLINE S map_determinant(const NodeVectors<S, C>& x, std::size_t q) {
+  S det;
+  (void)detail::adjugate(detail::local_gradient<C>(x, fem::Tables<fem::Lagrange<C>, Rule>::gradients[q]),
+                         det);
+  return det;
 }
 
 }  // namespace tunica::solid

@@ -2,6 +2,7 @@
 // Which element a law is solved with: with<FBar>(law), with<Pointwise>(law), or what the law asks for itself.
 #pragma once
 
+#include "tunica/mesh/cell_quadratic.hpp"
 #include "tunica/solid/energy.hpp"
 #include "tunica/solid/locking.hpp"
 #include "tunica/solid/material.hpp"
@@ -38,18 +39,25 @@ concept Pair = requires(const Law& law) {
   law.volumetric;
 };
 
-/// Law, its cure of locking and the law itself: pairs take MeanVolume where nothing is said, others
-/// Pointwise.
-template <class Given>
+namespace detail {
+/// One pressure is too few for a Hex27, and four are too many for all others: they alternate.
+template <mesh::Cell C>
+inline constexpr bool holds_linear_pressure = C::vtk_type == mesh::Hex27::vtk_type;
+}  // namespace detail
+
+/// Law, its cure of locking in cells C and the law itself: pairs take LinearVolume in Hex27 and MeanVolume in
+/// other cells where nothing is said, others Pointwise; the pressure of FBar of a pair is kept apart.
+template <class Given, mesh::Cell C>
 struct Formulation {
   using Law = Given;
-  using Locking = std::conditional_t<Pair<Given>, MeanVolume, Pointwise>;
+  using Locking = std::conditional_t<
+      Pair<Given>, std::conditional_t<detail::holds_linear_pressure<C>, LinearVolume, MeanVolume>, Pointwise>;
   [[nodiscard]] static const Law& law(const Given& given) { return given; }
 };
-template <class Cure, class Inner>
-struct Formulation<With<Cure, Inner>> {
+template <class Cure, class Inner, mesh::Cell C>
+struct Formulation<With<Cure, Inner>, C> {
   using Law = Inner;
-  using Locking = Cure;
+  using Locking = std::conditional_t<Pair<Inner> && std::is_same_v<Cure, FBar>, CentreVolume, Cure>;
   [[nodiscard]] static const Law& law(const With<Cure, Inner>& given) { return given.law; }
 };
 

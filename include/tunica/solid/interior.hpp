@@ -2,6 +2,7 @@
 // The inside of a body: forces, tangent and energy of all its cells, by packs of cells through one kernel.
 #pragma once
 
+#include "tunica/core/expect.hpp"
 #include "tunica/core/pack_math.hpp"
 #include "tunica/core/parallel.hpp"
 #include "tunica/fem/block_assembly.hpp"
@@ -13,6 +14,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -21,10 +23,13 @@
 
 namespace tunica::solid {
 
-/// Cells C of a pair of laws under MeanVolume, or of any material under Pointwise or FBar. Vectors have 3
-/// numbers a node. All sums run in an order that the mesh alone fixes.
+/// Cells C of a pair of laws under MeanVolume, LinearVolume or CentreVolume, or of any material under
+/// Pointwise or FBar. Vectors have 3 numbers a node. All sums run in an order that the mesh alone fixes.
 template <mesh::Cell C, class Material, class Locking>
 class Interior {
+  static_assert(!std::is_same_v<Locking, LinearVolume> || detail::holds_linear_pressure<C>,
+                "the displacements of Hex27 alone hold a linear pressure");
+
  public:
   using Element = Kernel<C, Locking>;
   using Single = SingleElement<C, Locking>;
@@ -38,7 +43,7 @@ class Interior {
         assembly_(mesh),
         laws_(material, mesh.region, mesh.cell_count()),
         smallest_J_(static_cast<std::size_t>(mesh.cell_count()), 1) {
-    if constexpr (mean) cells_.resize(smallest_J_.size());
+    if constexpr (keeps) cells_.resize(smallest_J_.size());
   }
 
   [[nodiscard]] const Laws& laws() const { return laws_; }
@@ -50,8 +55,10 @@ class Interior {
   /// that step in place of U'(theta), and f itself where the cells keep no pressure.
   [[nodiscard]] bool forces(const Eigen::VectorXd& u, double step, Eigen::VectorXd& f,
                             Eigen::VectorXd& f_predicted) {
+    if constexpr (Element::bar)
+      TUNICA_EXPECT(laws_.prestress().empty(), "F-bar takes no prestress: it knows F at the centre alone");
     f.setZero(u.size());
-    if constexpr (mean) f_predicted.setZero(u.size());
+    if constexpr (keeps) f_predicted.setZero(u.size());
     for_each_pack([&](const auto& pack, const auto& law, const auto* data, const auto* stored) {
       S X[nodes][3], x[nodes][3];
       assembly_.gather(pack, nodes_, X);
@@ -59,26 +66,20 @@ class Interior {
       typename Element::template Forces<S> out;
       Element::forces(law, X, x, data, stored, out);
       for (int l = 0; l < pack.count; ++l) smallest_J_[at(pack.cell[l])] = out.smallest_J[l];
-      if constexpr (mean) {
+      if constexpr (keeps) {
         keep(pack, out, step);
-        if (augmented_) {
-          const S held = lanes(pack, [&](Index e) { return cells_[at(e)].multiplier; });
-          for (int a = 0; a < nodes; ++a)
-            for (int i = 0; i < 3; ++i) out.f[a][i] += held * out.slope[a][i];
-        }
+        if (augmented_)
+          add_pressures(pack, out, [](const CellState& c, std::size_t k) { return c.multiplier[k]; });
       }
       assembly_.add(pack, out.f, f);
-      if constexpr (mean) {
-        S predicted[nodes][3];
-        const S change = lanes(pack, [&](Index e) { return cells_[at(e)].predicted - cells_[at(e)].p; });
-        for (int a = 0; a < nodes; ++a)
-          for (int i = 0; i < 3; ++i) predicted[a][i] = out.f[a][i] + change * out.slope[a][i];
-        assembly_.add(pack, predicted, f_predicted);
+      if constexpr (keeps) {
+        add_pressures(pack, out, [](const CellState& c, std::size_t k) { return c.predicted[k] - c.p[k]; });
+        assembly_.add(pack, out.f, f_predicted);
       }
     });
-    if constexpr (!mean) f_predicted = f;
+    if constexpr (!keeps) f_predicted = f;
     rounding_ = 0;
-    if constexpr (mean) {
+    if constexpr (keeps) {
       for (const CellState& cell : cells_) rounding_ += cell.rounding * cell.rounding;
       rounding_ = std::sqrt(rounding_);
     }
@@ -93,39 +94,48 @@ class Interior {
   [[nodiscard]] Index inverted_cell() const { return inverted_cell_; }
 
   /// A step du leaves the u of the last forces(): the pressures go from the ones predicted so far to
-  /// U'(theta) + U'' dv.du/V.
+  /// p_i + sum_j bulk_ij dtheta_j(du).
   void direction(const Eigen::VectorXd& du) {
-    if constexpr (mean)
+    if constexpr (keeps)
       parallel_chunks(static_cast<std::ptrdiff_t>(cells_.size()), 512,
                       [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                         for (std::ptrdiff_t e = begin; e < end; ++e) {
                           CellState& cell = cells_[static_cast<std::size_t>(e)];
-                          double dv = 0;
-                          for (int a = 0; a < nodes; ++a)
-                            for (int i = 0; i < 3; ++i)
-                              dv += cell.slope[a][i] * du[3 * assembly_.cells()(a, e) + i];
                           cell.start = cell.predicted;
-                          cell.target = cell.p + cell.bulk_per_volume * dv;
+                          cell.target = cell.p;
+                          for (std::size_t k = 0; k < modes; ++k) {
+                            double change = 0;
+                            for (int a = 0; a < nodes; ++a)
+                              for (int i = 0; i < 3; ++i)
+                                change += cell.rate[k][a][i] * du[3 * assembly_.cells()(a, e) + i];
+                            for (std::size_t j = 0; j < modes; ++j)
+                              cell.target[j] += cell.gain[j][k] * change;
+                          }
                         }
                       });
   }
 
   /// The pressures of the last forces() become multipliers of the cells' volumes: equilibrium under the same
-  /// loads is then nearer to v = V (augmented Lagrangian [SIMO91]). Largest |v/V - 1| of the last forces().
-  double augment() requires(std::is_same_v<Locking, MeanVolume>) {
+  /// loads is then nearer to theta = 1 (augmented Lagrangian [SIMO91]). The largest of all cells of the root
+  /// of the mean of (theta - 1)^2, with MeanVolume |v/V - 1|, in the last forces().
+  double augment() requires(Element::keeps) {
     double off = 0;
     for (CellState& cell : cells_) {
-      const double error = std::abs(cell.theta - 1);
-      if (!(error <= off)) off = error;
+      if (!(cell.off <= off)) off = cell.off;
       cell.multiplier = cell.p;
     }
     augmented_ = true;
     return off;
   }
-  /// What augment() left in a cell [Pa].
-  [[nodiscard]] double multiplier(Index cell) const {
-    if constexpr (mean) return cells_[at(cell)].multiplier;
-    return 0;
+  /// What augment() left at the points of a cell [Pa].
+  [[nodiscard]] Eigen::Array<double, 1, Element::points> multiplier(Index cell) const {
+    if constexpr (keeps)
+      if (augmented_) {
+        typename Single::template Nodal<double> X;
+        for (int a = 0; a < nodes; ++a) X.col(a) = nodes_.col(assembly_.cells()(a, cell));
+        return Single::pressure(cells_[at(cell)].multiplier, X, laws_.data(cell));
+      }
+    return Eigen::Array<double, 1, Element::points>::Zero();
   }
 
   /// A += scale K(u), with the pressures predicted in the last forces().
@@ -136,11 +146,14 @@ class Interior {
           assembly_.gather(pack, nodes_, X);
           assembly_.gather(pack, u, x);
           typename Element::template Tangent<S> out;
-          if constexpr (mean)
-            Element::tangent(law, X, x, data, stored,
-                             lanes(pack, [&](Index e) { return cells_[at(e)].predicted; }), out);
-          else
+          if constexpr (keeps) {
+            typename Element::template Pressures<S> p;
+            for (std::size_t k = 0; k < modes; ++k)
+              p[k] = lanes(pack, [&](Index e) { return cells_[at(e)].predicted[k]; });
+            Element::tangent(law, X, x, data, stored, p, out);
+          } else {
             Element::tangent(law, X, x, data, stored, out);
+          }
           if (scale != 1)
             for (auto& block : out.K)
               for (auto& entry : block) entry *= S(scale);
@@ -153,7 +166,7 @@ class Interior {
   }
 
   /// Strain energy [J].
-  [[nodiscard]] double energy(const Eigen::VectorXd& u) const requires(!std::is_same_v<Locking, FBar>) {
+  [[nodiscard]] double energy(const Eigen::VectorXd& u) const requires(!Element::bar) {
     std::vector<double> of_cell(smallest_J_.size());
     for_each_pack([&](const auto& pack, const auto& law, const auto* data, const auto* stored) {
       S X[nodes][3], x[nodes][3];
@@ -169,18 +182,21 @@ class Interior {
 
  private:
   static constexpr int nodes = C::nodes;
-  static constexpr bool mean = std::is_same_v<Locking, MeanVolume>;
+  static constexpr bool keeps = Element::keeps;
+  static constexpr std::size_t modes = Element::modes;
   static constexpr double roundings = 2;  // measured: residuals stall at 0.2 to 0.6 of this bound
   using S = Pack<double>;
   static constexpr int width = Lanes<S>::count;
   using Cells = fem::CellPack<width>;
 
   struct CellState {
-    double rounding = 0, p = 0,
-           bulk_per_volume = 0;                   // p = U'(theta) + multiplier and U''/V at the last forces
-    double theta = 1, multiplier = 0;             // v/V; the pressure that augment() left [Pa]
-    double start = 0, target = 0, predicted = 0;  // pressures along a step of Newton [Pa]
-    double slope[nodes][3] = {};                  // dv/du [m2]
+    using Pressures = std::array<double, modes>;
+    double rounding = 0, off = 0;              // off: root of the mean of (theta - 1)^2
+    Pressures p{};                             // of U'(theta), with the multipliers, at the last forces
+    std::array<Pressures, modes> gain{};       // dp_i = sum_j gain_ij rate_j . du
+    Pressures multiplier{};                    // what augment() left [Pa]
+    Pressures start{}, target{}, predicted{};  // along a step of Newton [Pa]
+    double rate[modes == 0 ? 1 : modes][nodes][3] = {};  // V dtheta_i/du [m2], dJ0/du of CentreVolume [1/m]
   };
 
   static std::size_t at(Index e) { return static_cast<std::size_t>(e); }
@@ -192,21 +208,38 @@ class Interior {
     return s;
   }
 
+  /// out.f += sum_k pressure(cell, k) slope_k
+  template <class Pressure>
+  void add_pressures(const Cells& pack, typename Element::template Forces<S>& out,
+                     Pressure&& pressure) const {
+    for (std::size_t k = 0; k < modes; ++k) {
+      const S p = lanes(pack, [&](Index e) { return pressure(cells_[at(e)], k); });
+      for (int a = 0; a < nodes; ++a)
+        for (int i = 0; i < 3; ++i) out.f[a][i] += p * out.slope[k][a][i];
+    }
+  }
+
   void keep(const Cells& pack, const typename Element::template Forces<S>& out, double step) {
     for (int l = 0; l < pack.count; ++l) {
       CellState& cell = cells_[at(pack.cell[l])];
-      double size = 0;
-      for (int a = 0; a < nodes; ++a)
-        for (int i = 0; i < 3; ++i) {
-          cell.slope[a][i] = out.slope[a][i][l];
-          size += cell.slope[a][i] * cell.slope[a][i];
-        }
-      cell.theta = out.theta[l];
-      cell.p = out.p[l] + cell.multiplier;
-      cell.bulk_per_volume = out.bulk[l] / out.volume[l];
+      double off = 0, rounding = 0;
+      for (std::size_t k = 0; k < modes; ++k) {
+        double size = 0;
+        for (int a = 0; a < nodes; ++a)
+          for (int i = 0; i < 3; ++i) {
+            size += out.slope[k][a][i][l] * out.slope[k][a][i][l];
+            cell.rate[k][a][i] = out.rate(k)[a][i][l];
+          }
+        const double error = out.theta[k][l] - (k == 0 ? 1 : 0), bulk = out.bulk[k][k][l];
+        off += error * error;
+        rounding += bulk * bulk * size;
+        cell.p[k] = out.p[k][l] + cell.multiplier[k];
+        for (std::size_t j = 0; j < modes; ++j) cell.gain[k][j] = out.gain(k, j)[l];
+        cell.predicted[k] = step < 0 ? cell.p[k] : cell.start[k] + step * (cell.target[k] - cell.start[k]);
+      }
+      cell.off = std::sqrt(off);
       // theta is known to a few roundings only, and the pressure to kappa times as much.
-      cell.rounding = roundings * std::numeric_limits<double>::epsilon() * out.bulk[l] * std::sqrt(size);
-      cell.predicted = step < 0 ? cell.p : cell.start + step * (cell.target - cell.start);
+      cell.rounding = roundings * std::numeric_limits<double>::epsilon() * std::sqrt(rounding);
     }
   }
 
@@ -254,7 +287,7 @@ class Interior {
   Assembly assembly_;
   Laws laws_;
   std::vector<double> smallest_J_;
-  std::vector<CellState> cells_;  // of MeanVolume
+  std::vector<CellState> cells_;  // where they keep pressures
   bool augmented_ = false;
   Index inverted_cell_ = -1;
   double rounding_ = 0;

@@ -2,15 +2,14 @@
 // The element kernel of every hyperelastic solid: one template over cell, law, cure of locking and scalar.
 #pragma once
 
-#include "tunica/core/select.hpp"
 #include "tunica/solid/element.hpp"
 #include "tunica/solid/isochoric_part.hpp"
-#include "tunica/solid/kernel_bar.hpp"
 #include "tunica/solid/kernel_blocks.hpp"
+#include "tunica/solid/kernel_cure.hpp"
 #include "tunica/solid/kernel_terms.hpp"
-#include "tunica/solid/locking.hpp"
 #include "tunica/solid/material.hpp"
 
+#include <array>
 #include <cstddef>
 #include <type_traits>
 
@@ -21,17 +20,20 @@ namespace tunica::solid {
 /// allocated, nothing is virtual. A law is a Material; what it reads at the points of the rule stands in
 /// `data`, an array of `points` entries, or nullptr for a law that reads nothing. `stored`: nullptr, or the
 /// deformation F_p of a prestress at each point; the reference carries it, F = (1 + du/dX) F_p, and volumes
-/// and energies are those of the body free of stress (not for FBar).
+/// and energies are those of the body free of stress (not for FBar and CentreVolume).
 ///   using K = Kernel<Hex8>;  K::Tangent<S> out;  K::tangent(law, X, u, data, out);   // X, u: S[8][3]
-/// The blocks of K are those that fem::BlockAssembly adds: add_symmetric where a <= b, add for FBar.
-/// `smallest_J` not positive, or NaN: the rest is of no use.
+/// The blocks of K are those that fem::BlockAssembly adds: add_symmetric where a <= b, add for FBar and
+/// CentreVolume. `smallest_J` not positive, or NaN: the rest is of no use.
 template <mesh::Cell C, class Locking = Pointwise, class Rule = StiffnessRule<C>>
 struct Kernel {
   using Cell = C;
   using Quadrature = Rule;
+  using Cure = KernelCure<C, Locking, Rule>;
   static constexpr int nodes = C::nodes, dim = C::dim, points = Rule::size;
+  /// Pressures that an element keeps.
+  static constexpr int modes = Cure::modes;
+  static constexpr bool keeps = Cure::keeps, centred = Cure::centred, bar = Cure::bar;
   using Places = BlockPlaces<nodes, Locking::blocks>;
-  static constexpr bool mean = std::is_same_v<Locking, MeanVolume>, bar = std::is_same_v<Locking, FBar>;
   static_assert(dim == 2 || dim == 3, "a solid is made of cells in the plane or in space");
 
   template <class S>
@@ -40,26 +42,31 @@ struct Kernel {
   template <class Law, class S>
   using Data = PointOf<Law, S>;
   template <class S>
-  struct Forces : ElementMean<S, Locking, nodes, dim> {
-    S f[nodes][dim];
-    S smallest_J;
-  };
+  using Forces = typename Cure::template Forces<S>;
   template <class S>
   struct Tangent : Forces<S> {
     S K[Places::count][dim * dim];
   };
+  template <class S>
+  using Pressures = typename Cure::template Pressures<S>;
 
   template <class Law, class S>
   [[nodiscard]] static S energy(const Law& law, const Nodal<S>& X, const Nodal<S>& u,
                                 const Data<Law, S>* data, const Tensor<S>* stored = nullptr) requires(!bar) {
-    S sum(0), volume(0), current(0);
+    S sum(0), volume(0);
+    Pressures<S> growth{};  // int phi_i (J - 1) dV
+    const Modes<S> modes_at(X, stored);
     for (std::size_t q = 0; q < points; ++q) {
       auto at = element_point<C, Rule>(X, q);
-      const Tensor<S> F = deformation(at, u, stored, q);
+      const Tensor<S> F = Cure::deformation(at, u, stored, q);
       sum += at.weight * solid::energy(part(law), F, point<Law, S>(data, q));
-      if constexpr (mean) volume += at.weight, current += at.weight * determinant(F);
+      if constexpr (keeps) {
+        volume += at.weight;
+        const S dv = at.weight * (determinant(F) - S(1));
+        for (std::size_t i = 0; i < modes; ++i) growth[i] += modes_at.times(dv, q, i);
+      }
     }
-    if constexpr (mean) sum += volume * law.volumetric.energy(current / volume);
+    if constexpr (keeps) sum += modes_at.energy(law.volumetric, growth, volume);
     return sum;
   }
 
@@ -71,15 +78,17 @@ struct Kernel {
   template <class Law, class S>
   static void forces(const Law& law, const Nodal<S>& X, const Nodal<S>& u, const Data<Law, S>* data,
                      const Tensor<S>* stored, Forces<S>& out) {
-    start(out);
+    Cure::start(out);
+    const Modes<S> modes_at(X, stored);
     const Centre<S> centre(X, u);
     for (std::size_t q = 0; q < points; ++q) {
-      const Here<S> here(X, u, stored, q, out);
+      const Here<S> here(X, u, stored, q, modes_at, out);
       S weight = here.at.weight;
       if constexpr (bar) weight *= centre.stress_factor(centre.ratio(here.J));
-      here.at.add_forces(solid::stress(part(law), seen(here, centre), point<Law, S>(data, q)), weight, out.f);
+      here.at.add_forces(solid::stress(part(law), Cure::seen(here, centre), point<Law, S>(data, q)), weight,
+                         out.f);
     }
-    finish(law, out);
+    Cure::finish(law, modes_at, centre, out);
   }
 
   /// The exact tangent.
@@ -91,54 +100,58 @@ struct Kernel {
   template <class Law, class S>
   static void tangent(const Law& law, const Nodal<S>& X, const Nodal<S>& u, const Data<Law, S>* data,
                       const Tensor<S>* stored, Tangent<S>& out) {
-    tangent_at(law, X, u, data, stored, pressure(law, X, u, stored), out);
+    tangent_at<Law, S>(law, X, u, data, stored, nullptr, out);
   }
-  /// The same with another pressure p [Pa] in its geometric part, as Newton on (u, theta, p) predicts it; the
-  /// forces are those at U'(theta).
+  /// The same with other pressures p_i [Pa] in its geometric part, as Newton on (u, theta, p) predicts them;
+  /// the forces are those at U'(theta).
   template <class Law, class S>
   static void tangent(const Law& law, const Nodal<S>& X, const Nodal<S>& u, const Data<Law, S>* data,
-                      const S& p, Tangent<S>& out) requires mean {
-    tangent_at<Law, S>(law, X, u, data, nullptr, p, out);
+                      const Pressures<S>& p, Tangent<S>& out) requires keeps {
+    tangent_at<Law, S>(law, X, u, data, nullptr, &p, out);
   }
   template <class Law, class S>
   static void tangent(const Law& law, const Nodal<S>& X, const Nodal<S>& u, const Data<Law, S>* data,
-                      const Tensor<S>* stored, const S& p, Tangent<S>& out) requires mean {
-    tangent_at(law, X, u, data, stored, p, out);
+                      const Tensor<S>* stored, const Pressures<S>& p, Tangent<S>& out) requires keeps {
+    tangent_at(law, X, u, data, stored, &p, out);
   }
 
-  /// body(q, sigma, volume): Cauchy stress at each point [Pa] and the current volume of the point [m^dim];
-  /// sigma = P F^T / J, with the pressure of MeanVolume and the F of FBar.
+  /// body(q, sigma, volume): Cauchy stress at each point [Pa] and the growth volume of the point [m^dim];
+  /// sigma = P F^T / J, with the pressures that are kept and the F of FBar.
   template <class Law, class S, class Body>
   static void for_each_stress(const Law& law, const Nodal<S>& X, const Nodal<S>& u, const Data<Law, S>* data,
                               const Tensor<S>* stored, Body&& body) {
     Forces<S> sums;
-    start(sums);
-    const S p = pressure(law, X, u, stored);
+    Cure::start(sums);
+    const Modes<S> modes_at(X, stored);
     const Centre<S> centre(X, u);
+    const auto p = Cure::pressures(law, X, u, stored, modes_at, centre);
     for (std::size_t q = 0; q < points; ++q) {
-      const Here<S> here(X, u, stored, q, sums);
-      const Tensor<S> F = seen(here, centre);
+      const Here<S> here(X, u, stored, q, modes_at, sums);
+      const Tensor<S> F = Cure::seen(here, centre);
       Tensor<S> sigma = (S(1) / determinant(F)) *
                         product(solid::stress(part(law), F, point<Law, S>(data, q)), transpose(F));
-      for (std::size_t k = 0; mean && k < 9; k += 4) sigma.m[k] += p;
+      if constexpr (keeps)
+        for (std::size_t k = 0; k < 9; k += 4) sigma.m[k] += modes_at.at(p, q);
       body(q, sigma, here.at.weight * here.J);
     }
   }
 
-  /// Kv = K v at u; the pressure of MeanVolume is U'(theta).
+  /// Kv = K v at u; pressures are those at U'(theta).
   template <class Law, class S>
   static void action(const Law& law, const Nodal<S>& X, const Nodal<S>& u, const Data<Law, S>* data,
                      const Nodal<S>& v, Nodal<S>& Kv) {
-    const S p = pressure<Law, S>(law, X, u, nullptr);
     Forces<S> out;
-    start(out);
+    Cure::start(out);
+    const Modes<S> modes_at(X, nullptr);
     Centre<S> centre(X, u);
-    S divergence(0), dv(0);
+    const auto p = Cure::template pressures<Law, S>(law, X, u, nullptr, modes_at, centre);
+    S divergence(0);
+    Pressures<S> change{};  // rate_i . v
     if constexpr (bar) divergence = centre.divergence(v);
     for (std::size_t q = 0; q < points; ++q) {
-      const Here<S> here(X, u, nullptr, q, out);
-      Response<S> r = solid::response(part(law), seen(here, centre), point<Law, S>(data, q));
-      cure(here, p, centre, r);
+      const Here<S> here(X, u, nullptr, q, modes_at, out);
+      Response<S> r = solid::response(part(law), Cure::seen(here, centre), point<Law, S>(data, q));
+      Cure::cure(here, p, q, modes_at, centre, r);
       const Tensor<S> H = here.at.gradient(v);
       Tensor<S> dP;
       for (int row = 0; row < 9; ++row) {
@@ -152,29 +165,34 @@ struct Kernel {
         dP.m[static_cast<std::size_t>(row)] = sum;
       }
       here.at.add_forces(dP, here.at.weight, out.f);
-      if constexpr (mean) dv += here.at.weight * double_dot(here.cof, H);
+      if constexpr (keeps && !centred)
+        for (std::size_t i = 0; i < modes; ++i)
+          change[i] += modes_at.times(here.at.weight, q, i) * double_dot(here.cof, H);
     }
-    if constexpr (mean) dv *= law.volumetric.curvature(out.theta / out.volume) / out.volume;
+    Cure::close(law, modes_at, centre, out);
+    if constexpr (centred) change[0] = centre.J0 * divergence;
+    const auto dp = Cure::pressure_changes(out, change);
     for (int a = 0; a < nodes; ++a)
-      for (int i = 0; i < dim; ++i)
-        if constexpr (mean)
-          Kv[a][i] = out.f[a][i] + dv * out.slope[a][i];
-        else
-          Kv[a][i] = out.f[a][i];
+      for (int i = 0; i < dim; ++i) {
+        S sum = out.f[a][i];
+        if constexpr (keeps)
+          for (std::size_t k = 0; k < modes; ++k) sum += dp[k] * out.slope[k][a][i];
+        Kv[a][i] = sum;
+      }
   }
 
  private:
-  struct Nothing {
-    template <class Nodes>
-    Nothing(const Nodes&, const Nodes&) {}
-  };
   template <class S>
-  using Centre = std::conditional_t<bar, BarCentre<C, S>, Nothing>;
+  using Centre = typename Cure::template Centre<S>;
+  template <class S>
+  using Modes = typename Cure::template Modes<S>;
+  template <class S>
+  using Here = typename Cure::template Here<S>;
 
-  /// Only the laws of the isochoric part stand in the points of MeanVolume.
+  /// Only the isochoric law stands in the points of an element that keeps its pressures.
   template <class Law>
   [[nodiscard]] TUNICA_INLINE static const auto& part(const Law& law) {
-    if constexpr (mean)
+    if constexpr (keeps)
       return law.isochoric;
     else
       return law;
@@ -187,101 +205,22 @@ struct Kernel {
       return {};
   }
 
-  template <class S>
-  [[nodiscard]] TUNICA_INLINE static Tensor<S> deformation(ElementPoint<S, C>& at, const Nodal<S>& u,
-                                                           const Tensor<S>* stored, std::size_t q) {
-    if (!stored) return at.deformation(u);
-    at.free_of_stress(stored[q]);
-    return stored[q] + at.gradient(u);
-  }
-
-  /// A point with its deformation; it adds to what MeanVolume sums.
-  template <class S>
-  struct Here {
-    ElementPoint<S, C> at;
-    Tensor<S> F, cof;
-    S J;
-
-    TUNICA_INLINE Here(const Nodal<S>& X, const Nodal<S>& u, const Tensor<S>* stored, std::size_t q,
-                       Forces<S>& out)
-        : at(element_point<C, Rule>(X, q)), F(Kernel::deformation(at, u, stored, q)), cof(cofactor(F)) {
-      J = F.m[0] * cof.m[0] + F.m[1] * cof.m[1] + F.m[2] * cof.m[2];
-      out.smallest_J = q == 0 ? J : select(J < out.smallest_J, J, out.smallest_J);
-      if constexpr (mean) {
-        out.volume += at.weight;
-        out.theta += at.weight * J;
-        at.add_forces(cof, at.weight, out.slope);  // dv/du_a = int cof F G_a dV
-      }
-    }
-  };
-
-  template <class S>
-  TUNICA_INLINE static void start(Forces<S>& out) {
-    for (int a = 0; a < nodes; ++a)
-      for (int i = 0; i < dim; ++i) out.f[a][i] = S(0);
-    if constexpr (mean) {
-      out.volume = out.theta = S(0);
-      for (int a = 0; a < nodes; ++a)
-        for (int i = 0; i < dim; ++i) out.slope[a][i] = S(0);
-    }
-  }
-  template <class Law, class S>
-  TUNICA_INLINE static void finish(const Law& law, Forces<S>& out) {
-    if constexpr (mean) {
-      out.theta = out.theta / out.volume;
-      out.p = law.volumetric.slope(out.theta);
-      out.bulk = law.volumetric.curvature(out.theta);
-      for (int a = 0; a < nodes; ++a)
-        for (int i = 0; i < dim; ++i) out.f[a][i] += out.p * out.slope[a][i];
-    }
-  }
-
-  /// U'(v/V) of MeanVolume, which its points need before they are visited.
-  template <class Law, class S>
-  [[nodiscard]] TUNICA_INLINE static S pressure(const Law& law, const Nodal<S>& X, const Nodal<S>& u,
-                                                const Tensor<S>* stored) {
-    if constexpr (mean) {
-      Nodal<S> x;
-      for (int a = 0; a < nodes; ++a)
-        for (int i = 0; i < dim; ++i) x[a][i] = X[a][i] + u[a][i];
-      S volume = stored ? S(0) : element_volume<C, Rule, S>(X);
-      for (std::size_t q = 0; stored && q < points; ++q)
-        volume += element_point<C, Rule>(X, q).weight / determinant(stored[q]);
-      return law.volumetric.slope(element_volume<C, Rule, S>(x) / volume);
-    } else {
-      return S(0);
-    }
-  }
-
-  /// F as the law sees it.
-  template <class S>
-  [[nodiscard]] TUNICA_INLINE static Tensor<S> seen(const Here<S>& here, const Centre<S>& centre) {
-    if constexpr (bar)
-      return centre.scaled(centre.ratio(here.J), here.F);
-    else
-      return here.F;
-  }
-  /// P and A of `seen` F become those of the cure.
-  template <class S>
-  TUNICA_INLINE static void cure(const Here<S>& here, const S& p, Centre<S>& centre, Response<S>& r) {
-    if constexpr (bar) centre.see_through(here.F, here.cof, here.J, r);
-    if constexpr (mean) add_pressure(p, here.F, r);
-  }
-
   template <class Law, class S>
   static void tangent_at(const Law& law, const Nodal<S>& X, const Nodal<S>& u, const Data<Law, S>* data,
-                         const Tensor<S>* stored, const S& p, Tangent<S>& out) {
-    start(out);
+                         const Tensor<S>* stored, const Pressures<S>* given, Tangent<S>& out) {
+    Cure::start(out);
+    const Modes<S> modes_at(X, stored);
     Centre<S> centre(X, u);
+    const Pressures<S> p = given ? *given : Cure::pressures(law, X, u, stored, modes_at, centre);
     for (std::size_t q = 0; q < points; ++q) {
-      const Here<S> here(X, u, stored, q, out);
+      const Here<S> here(X, u, stored, q, modes_at, out);
       if constexpr (std::is_same_v<Locking, Pointwise> && GivesThreeTerms<Law, S>) {
         const auto r = law.three_terms(here.F);
         here.at.add_forces(r.P, here.at.weight, out.f);
         q == 0 ? add_three_terms<false>(r, here.at, out.K) : add_three_terms<true>(r, here.at, out.K);
       } else {
-        Response<S> r = solid::response(part(law), seen(here, centre), point<Law, S>(data, q));
-        cure(here, p, centre, r);
+        Response<S> r = solid::response(part(law), Cure::seen(here, centre), point<Law, S>(data, q));
+        Cure::cure(here, p, q, modes_at, centre, r);
         here.at.add_forces(r.P, here.at.weight, out.f);
         if constexpr (bar) here.at.add_forces(centre.M, here.at.weight, centre.middle);
         if (q == 0)
@@ -290,9 +229,20 @@ struct Kernel {
           add_tangent<Locking::blocks, true>(r.A.data(), here.at.G, here.at.weight, out.K);
       }
     }
-    finish(law, out);
-    if constexpr (mean) add_products<Locking::blocks>(out.bulk / out.volume, out.slope, out.slope, out.K);
+    Cure::finish(law, modes_at, centre, out);
     if constexpr (bar) add_products<Locking::blocks>(S(1), centre.middle, centre.g0, out.K);
+    if constexpr (modes == 1)
+      add_products<Locking::blocks>(out.gain(0, 0), out.slope[0], out.rate(0), out.K);
+    else if constexpr (keeps)
+      for (std::size_t i = 0; i < modes; ++i) {
+        S row[nodes][dim];  // sum_j bulk_ij slope_j
+        for (int a = 0; a < nodes; ++a)
+          for (int k = 0; k < dim; ++k) {
+            row[a][k] = out.bulk[i][0] * out.slope[0][a][k];
+            for (std::size_t j = 1; j < modes; ++j) row[a][k] += out.bulk[i][j] * out.slope[j][a][k];
+          }
+        add_products<Locking::blocks>(S(1) / out.volume, out.slope[i], row, out.K);
+      }
   }
 };
 

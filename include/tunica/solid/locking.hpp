@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// How an element sees its dilatation: at each point, as one mean, or by F-bar; and what the mean one keeps.
+// How an element sees its dilatation: at each point, as a mean or a linear field, or by F-bar; and what is
+// kept of it.
 #pragma once
 
 #include "tunica/solid/kernel_blocks.hpp"
 #include "tunica/solid/material.hpp"
 
+#include <array>
 #include <cstddef>
 
 namespace tunica::solid {
@@ -21,21 +23,58 @@ struct MeanVolume {
   static constexpr Blocks blocks = Blocks::upper;
 };
 
+/// The same with dilatation and pressure linear in the element and free to jump between elements, for
+/// quadratic hexahedra and quadrilaterals: with modes phi_i, int phi_i phi_j dV = V delta_ij,
+///   Pi(u) = int Phi_iso + U(theta) dV,  theta = sum_i theta_i phi_i,  theta_i = 1/V int phi_i J dV,
+///   p = sum_i p_i phi_i,  p_i = 1/V int phi_i U'(theta) dV.
+/// The modes are linear in X, so that they keep their order on bent cells [ARNOLD02].
+struct LinearVolume {
+  static constexpr Blocks blocks = Blocks::upper;
+};
+
 /// F-bar = (J0/J)^(1/dim) F with J0 at the centre [NETO96]; any law, its tangent is not symmetric. For cells
 /// that are not simplices: there J0 = J.
 struct FBar {
   static constexpr Blocks blocks = Blocks::all;
 };
 
-/// What MeanVolume knows of an element; nothing for the others.
+/// FBar of a pair, the same forces with the pressure apart: Phi_iso sees F-bar, and U'(J0) int cof F G dV is
+/// added. So Newton can predict the pressure.
+struct CentreVolume {
+  static constexpr Blocks blocks = Blocks::all;
+};
+
+/// How many pressures an element keeps.
+template <class Locking, int Dim>
+inline constexpr int volume_modes = 0;
+template <int Dim>
+inline constexpr int volume_modes<MeanVolume, Dim> = 1;
+template <int Dim>
+inline constexpr int volume_modes<CentreVolume, Dim> = 1;
+template <int Dim>
+inline constexpr int volume_modes<LinearVolume, Dim> = Dim + 1;
+
+/// What an element knows of its dilatation theta = sum_i theta_i phi_i, where it keeps pressures.
+template <class S, class Locking, int Nodes, int Dim, int Modes = volume_modes<Locking, Dim>>
+struct KeptVolume {
+  S volume;                                      // V of the reference [m^dim]
+  std::array<S, std::size_t{Modes}> theta;       // v/V first; J0 of CentreVolume
+  std::array<S, std::size_t{Modes}> p;           // [Pa]
+  std::array<std::array<S, Modes>, Modes> bulk;  // 1/V int phi_i U'' phi_j dV [Pa]
+  S slope[Modes][Nodes][Dim];  // int phi_i cof F G dV: the force per unit of p_i [m^(dim-1)]
+
+  /// dp_i = sum_j gain_ij rate_j . du, where rate_j is V dtheta_j/du, and dJ0/du of CentreVolume.
+  [[nodiscard]] S gain(std::size_t i, std::size_t j) const { return bulk[i][j] / volume; }
+  [[nodiscard]] const auto& rate(std::size_t j) const { return slope[j]; }
+};
 template <class S, class Locking, int Nodes, int Dim>
-struct ElementMean {};
+struct KeptVolume<S, Locking, Nodes, Dim, 0> {};
 template <class S, int Nodes, int Dim>
-struct ElementMean<S, MeanVolume, Nodes, Dim> {
-  S volume;             // V of the reference [m^dim]
-  S theta;              // v/V
-  S p, bulk;            // U'(theta), U''(theta) [Pa]
-  S slope[Nodes][Dim];  // dv/du, also the force per unit of p [m^(dim-1)]
+struct KeptVolume<S, CentreVolume, Nodes, Dim, 1> : KeptVolume<S, MeanVolume, Nodes, Dim, 1> {
+  S trial[Nodes][Dim];  // dJ0/du [1/m]
+
+  [[nodiscard]] S gain(std::size_t, std::size_t) const { return this->bulk[0][0]; }
+  [[nodiscard]] const auto& rate(std::size_t) const { return trial; }
 };
 
 /// The part p of a pressure in A: p d cof F/dF = p e_ikm e_JLN F_mN, and P += p cof F.

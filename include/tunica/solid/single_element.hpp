@@ -21,14 +21,13 @@ template <mesh::Cell C, class Locking>
 struct SingleElement {
   using Element = Kernel<C, Locking>;
   static constexpr int nodes = C::nodes, size = 3 * C::nodes, points = Element::points;
-  static constexpr bool mean = std::is_same_v<Locking, MeanVolume>;
   template <class S>
   using Nodal = Eigen::Matrix<S, 3, nodes>;
   template <class Material>
   using Data = CellData<PointLaw<Material>>;
 
-  /// theta, p, bulk, volume and volume_slope are those of MeanVolume, zero elsewhere: v/V, U'(theta) [Pa],
-  /// U''(theta) [Pa], V [m3] and dv/du [m2].
+  /// theta, p, bulk, volume and volume_slope are those of the first mode where pressures are kept, zero
+  /// elsewhere: v/V, the mean of U'(theta) [Pa] and U''(theta) [Pa], V [m3] and dv/du [m2].
   template <class S>
   struct Forces {
     Eigen::Matrix<S, size, 1> force, volume_slope;
@@ -66,11 +65,27 @@ struct SingleElement {
   /// The same with the pressure p [Pa] in the geometric part.
   template <class Material, class S>
   [[nodiscard]] static Tangent<S> tangent(const Material& material, const Nodal<S>& X, const Nodal<S>& u,
-                                          const S& p, const Data<Material>& data = {}) requires mean {
+                                          const S& p,
+                                          const Data<Material>& data = {}) requires(Element::modes == 1) {
     const Call<Material, S> call(X, u, data);
     typename Element::template Tangent<S> out;
-    Element::tangent(material, call.X, call.u, call.data(), call.stored(), p, out);
+    Element::tangent(material, call.X, call.u, call.data(), call.stored(),
+                     typename Element::template Pressures<S>{p}, out);
     return whole(out);
+  }
+
+  /// The pressure [Pa] at the points of which an element keeps the parts p_i.
+  template <class Given>
+  [[nodiscard]] static Eigen::Array<double, 1, points> pressure(
+      const typename Element::template Pressures<double>& p, const Nodal<double>& X, const Given& data) {
+    Tensor<double> stored[points];
+    for (std::size_t q = 0; data.prestress != nullptr && q < points; ++q)
+      stored[q] = detail::tensor_of(data.prestress[q]);
+    const typename Element::Cure::template Modes<double> modes(NodeArray<double>(X).v,
+                                                               data.prestress != nullptr ? stored : nullptr);
+    Eigen::Array<double, 1, points> at;
+    for (std::size_t q = 0; q < points; ++q) at[static_cast<int>(q)] = modes.at(p, q);
+    return at;
   }
 
   /// Where the points lie [m].
@@ -153,9 +168,10 @@ struct SingleElement {
     for (int a = 0; a < nodes; ++a)
       for (int i = 0; i < 3; ++i) {
         to.force[3 * a + i] = out.f[a][i];
-        if constexpr (mean) to.volume_slope[3 * a + i] = out.slope[a][i];
+        if constexpr (Element::keeps) to.volume_slope[3 * a + i] = out.slope[0][a][i];
       }
-    if constexpr (mean) to.theta = out.theta, to.p = out.p, to.bulk = out.bulk, to.volume = out.volume;
+    if constexpr (Element::keeps)
+      to.theta = out.theta[0], to.p = out.p[0], to.bulk = out.bulk[0][0], to.volume = out.volume;
   }
   template <class S>
   static Tangent<S> whole(const typename Element::template Tangent<S>& out) {
