@@ -52,6 +52,10 @@ header tunica/mesh/c.hpp '#include <iostream>'
 expect 'too heavy outside io' "$modules"
 
 fresh
+header tunica/fem/c.hpp '// virtual in a comment is no fault' 'struct S { virtual void f(); };'
+expect 'nothing is virtual in core, fem, la and solid' "$modules"
+
+fresh
 header tunica/mesh/c.hpp '#include "tunica/core/gone.hpp"'
 expect 'which is not there' "$modules"
 

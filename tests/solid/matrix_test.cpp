@@ -14,6 +14,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <type_traits>
 
 using namespace tunica;
 using namespace tunica::solid;
@@ -165,6 +166,59 @@ void check(const std::string& cell, const Laws& laws) {
                << worst.frame);
 }
 
+/// An affine displacement has one stress, and its forces are P int G_a dV: those cancel at inner nodes of any
+/// patch of cells, if the rule of the kernel integrates them. Largest difference of the largest force.
+template <class K, class Named>
+double patch_error(const Named& named) {
+  using Law = decltype(named.law);
+  using C = typename K::Cell;
+  constexpr bool simplex = C::vtk_type == mesh::Tri3::vtk_type || C::vtk_type == mesh::Tri6::vtk_type ||
+                           C::vtk_type == mesh::Tet4::vtk_type || C::vtk_type == mesh::Tet10::vtk_type;
+  using Rule = fem::Gauss<C, simplex || C::nodes == 6 ? 5 : 7>;  // another than the kernel's
+  test::DeformedCell<C, double> at;
+  if constexpr (std::is_same_v<C, mesh::Tet10>) {  // straight edges: its rule is of second degree
+    for (const auto& e : C::edges)
+      for (int i = 0; i < 3; ++i) at.X[e[2]][i] = 0.5 * (at.X[e[0]][i] + at.X[e[1]][i]);
+  }
+  Tensor<double> H{.m = {.3, .2, -.1, .1, -.15, .2, -.05, .1, .1}};
+  if (K::dim == 2) H.m[2] = H.m[5] = H.m[6] = H.m[7] = H.m[8] = 0;
+  typename K::template Nodal<double> u;
+  for (int a = 0; a < K::nodes; ++a)
+    for (int i = 0; i < K::dim; ++i) {
+      u[a][i] = 0;
+      for (int j = 0; j < K::dim; ++j) u[a][i] += H(i, j) * at.X[a][j];
+    }
+  std::array<PointOf<Law, double>, K::points> data;
+  data.fill(PointOf<Law, double>{named.point(0.1).m});
+  typename K::template Forces<double> f;
+  K::forces(named.law, at.X, u, data.data(), f);
+  typename K::template Nodal<double> want{};
+  const Tensor<double> P = solid::stress(named.law, identity<double>() + H, data[0]);
+  for (std::size_t q = 0; q < Rule::size; ++q) {
+    const auto point = element_point<C, Rule>(at.X, q);
+    point.add_forces(P, point.weight, want);
+  }
+  double worst = 0, largest = 0;
+  for (int a = 0; a < K::nodes; ++a)
+    for (int i = 0; i < K::dim; ++i) {
+      worst = std::max(worst, std::abs(f.f[a][i] - want[a][i]));
+      largest = std::max(largest, std::abs(want[a][i]));
+    }
+  return worst / largest;
+}
+
+template <class K, class Laws>
+void check_patch(const std::string& cell, const Laws& laws) {
+  double worst = 0;
+  for (const auto& named : laws) {
+    INFO(cell << ", " << named.name);
+    const double error = patch_error<K>(named);
+    CHECK(error < 1e-13);
+    worst = std::max(worst, error);
+  }
+  MESSAGE(cell << ", " << laws.size() << " laws: forces of an affine displacement off by " << worst);
+}
+
 }  // namespace
 
 #define TUNICA_MATRIX_CELLS                                                                           \
@@ -179,5 +233,13 @@ TEST_SUITE("unit") {
     check<Kernel<C>>(name + "pointwise", materials);
     check<Kernel<C, MeanVolume>>(name + "mean volume", test::every_pair(20));
     if constexpr (C::nodes != C::dim + 1) check<Kernel<C, FBar>>(name + "F-bar", materials);
+  }
+
+  TEST_CASE_TEMPLATE("solid: every law in every cell passes the patch test", C, TUNICA_MATRIX_CELLS) {
+    const std::string name = std::to_string(C::nodes) + " nodes in " + std::to_string(C::dim) + "-D, ";
+    const auto materials = test::every_material(20);
+    check_patch<Kernel<C>>(name + "pointwise", materials);
+    check_patch<Kernel<C, MeanVolume>>(name + "mean volume", test::every_pair(20));
+    if constexpr (C::nodes != C::dim + 1) check_patch<Kernel<C, FBar>>(name + "F-bar", materials);
   }
 }
