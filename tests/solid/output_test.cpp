@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/solid/output.hpp"
+#include "support/tube_cells.hpp"
+#include "support/vtk_python.hpp"
 #include "tunica/io/vtu.hpp"
+#include "tunica/io/vtu_cells.hpp"
 #include "tunica/meshing/box.hpp"
 #include "tunica/meshing/tube.hpp"
 #include "tunica/solid/laws.hpp"
@@ -9,17 +12,143 @@
 #include <doctest/doctest.h>
 #include <Eigen/Geometry>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 using namespace tunica;
 using namespace tunica::solid;
+
+namespace {
+
+/// A deformation with shear, twist and a change of volume.
+const Eigen::Matrix3d stretched{{1.2, 0.3, -0.1}, {0.1, 0.95, 0.2}, {-0.05, 0.1, 1.08}};
+const Hyperelastic rubber{Yeoh{.c10 = 1, .c20 = 0.3}, SimoTaylor{.kappa = 40}};
+
+struct Exact {
+  Symmetric<double> cauchy;
+  double J, stretch;
+  Principal principal;
+};
+Exact exact(const Vec3& fibre) {
+  Tensor<double> F;
+  for (int k = 0; k < 9; ++k) F.m[static_cast<std::size_t>(k)] = stretched(k / 3, k % 3);
+  const auto P = rubber.stress(F);
+  Eigen::Matrix3d sigma;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      sigma(i, j) = (P(i, 0) * F(j, 0) + P(i, 1) * F(j, 1) + P(i, 2) * F(j, 2)) / stretched.determinant();
+  return {.cauchy = symmetric_part<double>(sigma),
+          .J = stretched.determinant(),
+          .stretch = (stretched * fibre).norm() / fibre.norm(),
+          .principal = principal(symmetric_part<double>(sigma))};
+}
+
+/// The largest error of each field, of the largest stress where it is one.
+void check_fields(const WallFields& fields, const Exact& want) {
+  const double size = want.cauchy.norm();
+  double stress = 0, mises = 0, values = 0, direction = 0, J = 0, stretch = 0;
+  for (Eigen::Index k = 0; k < fields.J.size(); ++k) {
+    stress = std::max(stress, (fields.cauchy.col(k) - want.cauchy).norm() / size);
+    mises = std::max(mises, std::abs(fields.von_mises[k] - von_mises(want.cauchy)) / size);
+    values = std::max(values, (fields.principal.col(k) - want.principal.values).norm() / size);
+    for (int i = 0; i < 3; ++i)
+      direction = std::max(direction,
+                           1 - std::abs(fields.directions[i].col(k).dot(want.principal.directions.col(i))));
+    J = std::max(J, std::abs(fields.J[k] - want.J));
+    stretch = std::max(stretch, std::abs(fields.fibre_stretch[k] - want.stretch));
+  }
+  CHECK(fields.J.size() > 0);
+  CHECK(stress < 1e-12);
+  CHECK(mises < 1e-12);
+  CHECK(values < 1e-12);
+  CHECK(direction < 1e-12);
+  CHECK(J < 1e-13);
+  CHECK(stretch < 1e-13);
+}
+
+template <class Locking, mesh::Cell C>
+void check_affine_cell(const std::filesystem::path& folder, const std::string& cure) {
+  INFO(C::nodes << " nodes, " << cure);
+  auto mesh = test::box_of<C>(meshing::Block{.cells = {3, 2, 2}, .hi = Vec3(1, 0.8, 0.7)});
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> jitter(-0.02, 0.02);
+  for (Index n = 0; n < mesh.node_count(); ++n)
+    for (int i = 0; i < 3; ++i) mesh.nodes(i, n) += jitter(random);
+  const Vec3 fibre(1, 2, -2);
+  Body body{mesh, with<Locking>(rubber), 0.0, Mass::lumped};
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(body.unknowns());
+  const Points<3> moved = stretched * mesh.nodes - mesh.nodes;
+  u.head(moved.size()) = moved.reshaped();
+  const auto press = [&](Eigen::VectorXd& x) {
+    if constexpr (std::is_same_v<Locking, NodalPressure>)
+      x.tail(mesh.node_count())
+          .setConstant(rubber.volumetric.slope(stretched.determinant()) /
+                       body.inside().pressures(Eigen::VectorXd::Ones(body.unknowns()))[0]);
+  };
+  press(u);
+  const Points<3> fibres = fibre.replicate(1, mesh.cell_count());
+  const WallFields at_nodes = nodal_fields(body, u, fibres), of_cells = cell_fields(body, u, fibres);
+  check_fields(at_nodes, exact(fibre));
+  check_fields(of_cells, exact(fibre));
+  CHECK((nodal_stress(body, u).colwise() - exact(fibre).cauchy).norm() < 1e-10 * exact(fibre).cauchy.norm());
+
+  io::VtuData data;
+  at_nodes.for_each([&](const char* name, const auto& field) { data.points.emplace_back(name, field); });
+  of_cells.for_each([&](const char* name, const auto& field) { data.cells.emplace_back(name, field); });
+  const auto path = folder / (std::to_string(C::nodes) + "_nodes_" + cure + ".vtu");
+  io::write_vtu(path, mesh, data);
+  CHECK(io::read_vtu_cell_vectors(path, "principal_stress") == of_cells.principal);
+  CHECK(io::read_vtu_cell_vectors(path, "principal_direction_3") == of_cells.directions[2]);
+
+  if constexpr (!std::is_same_v<Locking, FBar>) {  // carried by the mesh it is the same
+    mesh.nodes += moved;
+    Body carried{mesh, with<Locking>(rubber), 0.0, Mass::lumped};
+    carried.laws().prestress(std::vector<Eigen::Matrix3d>(
+        static_cast<std::size_t>(mesh.cell_count()) * decltype(carried)::Element::points, stretched));
+    Eigen::VectorXd none = Eigen::VectorXd::Zero(carried.unknowns());
+    if constexpr (std::is_same_v<Locking, NodalPressure>)
+      none.tail(mesh.node_count())
+          .setConstant(rubber.volumetric.slope(stretched.determinant()) /
+                       carried.inside().pressures(Eigen::VectorXd::Ones(carried.unknowns()))[0]);
+    const Points<3> turned = (stretched * fibre).replicate(1, mesh.cell_count());
+    check_fields(nodal_fields(carried, none, turned), exact(fibre));
+    check_fields(cell_fields(carried, none, turned), exact(fibre));
+  }
+}
+template <class Locking, mesh::Cell... C>
+void check_affine(const std::filesystem::path& folder, const std::string& cure) {
+  (check_affine_cell<Locking, C>(folder, cure), ...);
+}
+
+void check_all(const std::filesystem::path& folder) {
+  using namespace mesh;
+  check_affine<Pointwise, Tet4, Tet10, Hex8, Hex20, Hex27, Wedge6>(folder, "Pointwise");
+  check_affine<MeanVolume, Tet4, Tet10, Hex8, Hex20, Hex27, Wedge6>(folder, "MeanVolume");
+  check_affine<FBar, Hex8, Hex20, Hex27, Wedge6>(folder, "FBar");
+  check_affine<NodalPressure, Tet4>(folder, "NodalPressure");
+}
+
+/// A folder that is gone at the end of its scope.
+struct Folder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("tunica_fields_" + std::to_string(::getpid()));
+  Folder() { std::filesystem::create_directory(path); }
+  Folder(const Folder&) = delete;
+  ~Folder() { std::filesystem::remove_all(path); }
+};
+
+}  // namespace
 
 TEST_SUITE("unit") {
   TEST_CASE("solid: principal values and directions of tensors turned anyhow and with equal values") {
@@ -121,5 +250,19 @@ TEST_SUITE("unit") {
          {"cauchy_stress", "von_mises", "principal_stress", "principal_direction_1", "J", "fibre_stretch"})
       CHECK(text.str().find("Name=\"" + std::string(name) + "\"") != std::string::npos);
     CHECK(text.str().find("Name=\"cauchy_stress\" NumberOfComponents=\"6\"") != std::string::npos);
+  }
+
+  TEST_CASE("solid: fields of an affine deformation are exact in all cells and formulations") {
+    const Folder folder;
+    check_all(folder.path);
+  }
+
+  TEST_CASE("solid: VTK reads the fields of all cells and formulations as they are") {
+    const auto python = test::vtk_python();
+    if (!python) return;
+    const Folder folder;
+    check_all(folder.path);
+    const auto script = std::filesystem::path(__FILE__).parent_path() / "fields_in_vtk.py";
+    CHECK(std::system((*python + " '" + script.string() + "' '" + folder.path.string() + "'").c_str()) == 0);
   }
 }

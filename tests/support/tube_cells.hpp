@@ -4,6 +4,7 @@
 
 #include "support/thick_tube.hpp"
 #include "tunica/fem/shape_quadratic.hpp"
+#include "tunica/fem/shape_wedge.hpp"
 #include "tunica/mesh/quadratic.hpp"
 #include "tunica/meshing/box.hpp"
 #include "tunica/solid/laws.hpp"
@@ -17,21 +18,35 @@
 
 namespace tunica::test {
 
+/// A box of cells of C; of wedges, each hexahedron cut in two.
+template <mesh::Cell C>
+[[nodiscard]] mesh::Mesh<C, 3> box_of(const meshing::Block& block) {
+  if constexpr (std::is_same_v<C, mesh::Hex8>) {
+    return meshing::box_hexes(block);
+  } else if constexpr (std::is_same_v<C, mesh::Tet4>) {
+    return meshing::box_tets(block);
+  } else if constexpr (std::is_same_v<C, mesh::Tet10>) {
+    return mesh::quadratic<C>(meshing::box_tets(block));
+  } else if constexpr (std::is_same_v<C, mesh::Wedge6>) {
+    const auto hexes = meshing::box_hexes(block);
+    mesh::Mesh<C, 3> mesh;
+    mesh.nodes = hexes.nodes;
+    mesh.cells.resize(6, 2 * hexes.cells.cols());
+    const int halves[2][6] = {{0, 1, 2, 4, 5, 6}, {0, 2, 3, 4, 6, 7}};
+    for (Eigen::Index e = 0; e < mesh.cells.cols(); ++e)
+      for (int a = 0; a < 6; ++a) mesh.cells(a, e) = hexes.cells(halves[e % 2][a], e / 2);
+    return mesh;
+  } else {
+    return mesh::quadratic<C>(meshing::box_hexes(block));
+  }
+}
+
 /// n cells through the wall and 4 n around, one along an axis; all nodes are bent onto circles. Patches: x0
 /// inside, x1 outside, y0 and y1 the planes y = 0 and x = 0, z0 and z1 the ends.
 template <mesh::Cell C>
 [[nodiscard]] mesh::Mesh<C, 3> quarter_of_tube(int n, double inner, double outer) {
-  const meshing::Block block{.cells = {n, 4 * n, 1}, .hi = Vec3(1, 1, (outer - inner) / n)};
-  mesh::Mesh<C, 3> mesh = [&] {
-    if constexpr (std::is_same_v<C, mesh::Hex8>)
-      return meshing::box_hexes(block);
-    else if constexpr (std::is_same_v<C, mesh::Tet4>)
-      return meshing::box_tets(block);
-    else if constexpr (std::is_same_v<C, mesh::Tet10>)
-      return mesh::quadratic<C>(meshing::box_tets(block));
-    else
-      return mesh::quadratic<C>(meshing::box_hexes(block));
-  }();
+  mesh::Mesh<C, 3> mesh =
+      box_of<C>(meshing::Block{.cells = {n, 4 * n, 1}, .hi = Vec3(1, 1, (outer - inner) / n)});
   for (Index k = 0; k < mesh.node_count(); ++k) {
     const double r = inner + (outer - inner) * mesh.nodes(0, k),
                  angle = 0.5 * std::numbers::pi * mesh.nodes(1, k);

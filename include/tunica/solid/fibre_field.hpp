@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/core/vec.hpp"
 #include "tunica/solid/fibres.hpp"
 
@@ -51,8 +52,7 @@ template <std::size_t N>
     std::array<Vec3, N> a;
     const auto refuse = [&](std::size_t k, const std::string& found) {
       throw MeshError("fibres: cell " + std::to_string(c) + ", family " + std::to_string(k + 1) + ": " +
-                      found + " (" + std::to_string(a[k][0]) + " " + std::to_string(a[k][1]) + " " +
-                      std::to_string(a[k][2]) + ")");
+                      found + " " + place(a[k]));
     };
     std::size_t missing = 0;
     for (std::size_t k = 0; k < N; ++k) {
@@ -65,7 +65,7 @@ template <std::size_t N>
         continue;
       }
       if (!(std::abs(length - 1) <= options.tolerance))
-        refuse(k, "a direction of length " + std::to_string(length) + ", not 1");
+        refuse(k, "a direction of length " + seven_digits(length) + ", not 1");
       a[k] = vec::divided(a[k], length);
       vec::set_column(field.family[k], c, a[k]);
     }

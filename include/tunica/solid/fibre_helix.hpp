@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tunica/core/error.hpp"
+#include "tunica/core/text.hpp"
 #include "tunica/core/vec.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/solid/fibre_field.hpp"
@@ -146,7 +147,7 @@ template <mesh::Cell C>
                                                const std::vector<double>& radii) {
   for (std::size_t k = 0; k < radii.size(); ++k)
     if (!(radii[k] > (k > 0 ? radii[k - 1] : 0)))
-      throw MeshError("layers: radius " + std::to_string(k) + " is " + std::to_string(radii[k]) +
+      throw MeshError("layers: radius " + std::to_string(k) + " is " + seven_digits(radii[k]) +
                       ", not above the one before it");
   std::vector<Index> layer;
   layer.reserve(static_cast<std::size_t>(mesh.cell_count()));
