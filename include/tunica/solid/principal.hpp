@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tunica/core/types.hpp"
-#include "tunica/solid/isochoric.hpp"
+#include "tunica/solid/symmetric.hpp"
 
 #include <Eigen/Core>
 

@@ -6,6 +6,7 @@
 #include "tunica/solid/cell_data.hpp"
 #include "tunica/solid/formulation.hpp"
 #include "tunica/solid/kernel.hpp"
+#include "tunica/solid/symmetric.hpp"
 
 #include <Eigen/Core>
 
@@ -117,8 +118,10 @@ struct SingleElement {
     Stress out;
     Element::for_each_stress(material, call.X, call.u, call.data(), call.stored(),
                              [&](std::size_t q, const Tensor<double>& sigma, double volume) {
-                               const auto& m = sigma.m;
-                               out.sigma.col(static_cast<int>(q)) << m[0], m[4], m[8], m[1], m[5], m[2];
+                               for (std::size_t k = 0; k < 6; ++k) {
+                                 const auto [i, j] = symmetric_pairs[k];
+                                 out.sigma(static_cast<int>(k), static_cast<int>(q)) = sigma(i, j);
+                               }
                                out.volume[q] = volume;
                              });
     return out;
