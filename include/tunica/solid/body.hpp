@@ -58,8 +58,9 @@ struct InteriorOf<C, Law, NodalPressure> {
 /// threads.
 template <mesh::Cell C, class Given>
 class Body {
-  static_assert(requires { fem::Lagrange<C>::nodes; },
-                "the shape functions of this cell stand in tunica/fem/shape_quadratic.hpp or shape_wedge.hpp");
+  static_assert(
+      requires { fem::Lagrange<C>::nodes; },
+      "the shape functions of this cell stand in tunica/fem/shape_quadratic.hpp or shape_wedge.hpp");
   static_assert(C::dim == 3, "a solid body is made of cells in three dimensions");
 
  public:
