@@ -149,7 +149,11 @@ TEST_SUITE("convergence") {
     const auto pairs = test::every_pair(20);
     check<C, Pointwise>(name + "pointwise", materials);
     check<C, MeanVolume>(name + "mean volume", pairs);
-    if constexpr (C::nodes != 4 && C::nodes != 10) check<C, FBar>(name + "F-bar", pairs);
+    if constexpr (C::nodes != 4 && C::nodes != 10) {
+      check<C, FBar>(name + "F-bar", materials);
+      check<C, FBar>(name + "F-bar with its pressure apart", pairs);
+    }
+    if constexpr (C::nodes == 27) check<C, LinearVolume>(name + "linear volume", pairs);
     if constexpr (C::nodes == 4) check<C, NodalPressure>(name + "nodal pressures", pairs);
   }
 }

@@ -97,6 +97,11 @@ TEST_SUITE("unit") {
     const auto materials = test::every_material(20);
     check<Kernel<C>>(name + "pointwise", materials);
     check<Kernel<C, MeanVolume>>(name + "mean volume", test::every_pair(20));
-    if constexpr (C::nodes != C::dim + 1) check<Kernel<C, FBar>>(name + "F-bar", materials);
+    if constexpr (C::nodes != C::dim + 1) {
+      check<Kernel<C, FBar>>(name + "F-bar", materials);
+      check<Kernel<C, CentreVolume>>(name + "F-bar with its pressure apart", test::every_pair(20));
+    }
+    if constexpr (C::nodes >= 20)
+      check<Kernel<C, LinearVolume>>(name + "linear volume", test::every_pair(20));
   }
 }
