@@ -6,6 +6,7 @@
 #include "tunica/core/units.hpp"
 #include "tunica/fluid/projection.hpp"
 #include "tunica/la/newton.hpp"
+#include "tunica/meshing/box.hpp"
 #include "tunica/meshing/tube.hpp"
 #include "tunica/solid/body.hpp"
 #include "tunica/solid/laws.hpp"
@@ -67,6 +68,46 @@ void hex8_tangent(benchmark::State& state) {
   state.counters["error"] = (product - difference).norm() / difference.norm();
 }
 BENCHMARK(hex8_tangent)->Unit(benchmark::kMillisecond);
+
+// Linear tetrahedra assembled, pointwise (3 unknowns a node) and with nodal pressures (4: blocks of 16
+// numbers in place of 9): `error` is K v to central differences of the forces.
+template <class Given>
+void tet4_tangent(benchmark::State& state, const Given& law) {
+  const auto mesh = meshing::box_tets(28);
+  solid::Body<mesh::Tet4, Given> body{mesh, law, 0, solid::Mass::lumped};
+  auto& inside = body.inside();
+  Eigen::VectorXd u(body.unknowns()), v = u, Kv;
+  for (Eigen::Index k = 0; k < u.size(); ++k) {
+    u[k] = 0.002 * std::sin(1.7 * static_cast<double>(k));
+    v[k] = std::cos(0.9 * static_cast<double>(k));
+  }
+  auto blocks = inside.assembly().matrix();
+  for (auto _ : state) {
+    blocks.set_zero();
+    inside.add_tangent(u, 1, blocks);
+  }
+  state.SetItemsProcessed(state.iterations() * mesh.cell_count());
+  auto K = body.pattern();
+  body.tangent(u, Eigen::VectorXd::Zero(0), {}, K);
+  constexpr double step = 1e-7;
+  Eigen::VectorXd ahead, behind, predicted;
+  if (!body.internal_forces(u + step * v, la::no_step, ahead, predicted) ||
+      !body.internal_forces(u - step * v, la::no_step, behind, predicted))
+    ahead.setConstant(std::nan(""));
+  const Eigen::VectorXd difference = (ahead - behind) / (2 * step);
+  state.counters["error"] =
+      (K.template selfadjointView<Eigen::Lower>() * v - difference).norm() / difference.norm();
+}
+const solid::Hyperelastic<solid::Yeoh, solid::Quadratic> tet_law{solid::Yeoh{.c10 = 174_kPa, .c20 = 1880_kPa},
+                                                                 solid::Quadratic{.kappa = 348_MPa}};
+void tet4_tangent_pointwise(benchmark::State& state) {
+  tet4_tangent(state, solid::with<solid::Pointwise>(tet_law));
+}
+void tet4_tangent_pressures(benchmark::State& state) {
+  tet4_tangent(state, solid::with<solid::NodalPressure>(tet_law));
+}
+BENCHMARK(tet4_tangent_pointwise)->Unit(benchmark::kMillisecond);
+BENCHMARK(tet4_tangent_pressures)->Unit(benchmark::kMillisecond);
 
 // Forces and tangents of elements alone, a lane an element: `error` is K v to the derivative of the forces by
 // duals.
