@@ -4,15 +4,14 @@
 #include "cli.hpp"
 #include "flat_ends.hpp"
 #include "json.hpp"
+#include "mended_surface.hpp"
 #include "mesh_figures.hpp"
 #include "output_files.hpp"
 #include "stages.hpp"
 #include "surface_options.hpp"
-#include "tunica/io/closed_surface.hpp"
 #include "tunica/io/vtp.hpp"
 #include "tunica/io/vtu.hpp"
 #include "tunica/meshing/remesh.hpp"
-#include "tunica/meshing/repair.hpp"
 #include "tunica/meshing/tetrahedra.hpp"
 
 #include <optional>
@@ -24,22 +23,6 @@ using namespace tunica;
 using namespace tunica::examples;
 
 namespace {
-
-/// The surface of a file, mended as far as asked for; each change is told. InputError names what is left.
-mesh::Surface closed_surface(const SurfaceOptions& o, Json& report) {
-  io::StlFile file = io::read_stl(o.surface);
-  try {
-    auto mended = meshing::repair(std::move(file.surface), repair_options(o));
-    file.surface = std::move(mended.surface);
-    for (const auto& sentence : mended.report.sentences()) warn(report, o.surface + ": " + sentence);
-    report["repair"] = repair_figures(mended.report);
-  } catch (const MeshError& e) {
-    throw InputError(o.surface + ": " + e.what());
-  }
-  auto closed = io::closed_surface(o.surface, std::move(file));
-  for (const auto& notice : closed.notices) warn(report, notice);
-  return std::move(closed.surface);
-}
 
 /// Triangles of the edge length asked for.
 mesh::Surface remeshed(mesh::Surface given, double edge, Json& report) {
@@ -66,7 +49,7 @@ int main(int argc, char** argv) {
     Json report;
     report["warnings"] = Json(std::vector<std::string>{});
 
-    auto given = stage("read", [&] { return closed_surface(o, report); });
+    auto given = stage("read", [&] { return mended_surface(o, report); });
     name_flat_ends(given);  // their rims stay sharp, and they are patches of their own
     const auto topology = mesh::topology(given);
     report["given"] = surface_figures(given, topology);
