@@ -2,14 +2,18 @@
 // [COOK74]'s membrane with every cure of locking: quasi-incompressible in plane strain, compressible and
 // free.
 #include "tunica/fem/shape_quadratic.hpp"
+#include "tunica/mesh/patch_nodes.hpp"
 #include "tunica/mesh/quadratic.hpp"
 #include "tunica/meshing/box.hpp"
+#include "tunica/meshing/tube.hpp"
 #include "tunica/solid/laws.hpp"
 #include "tunica/solid/statics.hpp"
 
 #include <doctest/doctest.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+
+#include "support/thick_tube.hpp"
 
 #include <algorithm>
 #include <array>
@@ -253,6 +257,32 @@ TEST_SUITE("hard") {
   TEST_CASE("solid: F-bar bends a quasi-incompressible membrane") {
     const auto tips = ladder<mesh::Hex8>("Hex8 with FBar", with<FBar>(law), {8, 16});
     CHECK(std::abs(error(tips.back())) < 2);
+  }
+
+  TEST_CASE("solid: F-bar inflates the thick tube at kappa 2e6 c10 in one step") {
+    const test::ThickTube exact;
+    const auto mesh = meshing::quarter_tube({.inner_radius = exact.inner,
+                                             .thickness = exact.outer - exact.inner,
+                                             .length = 1e-3,
+                                             .cells = {4, 16, 1}});
+    Statics wall{mesh, with<FBar>(Hyperelastic{Yeoh{.c10 = exact.c10, .c20 = exact.c20},
+                                               Quadratic{.kappa = 2e6 * exact.c10}})};
+    wall.fix(mesh.patch("ends"), Axis::z);
+    wall.fix(mesh.patch("sym_x"), Axis::x);
+    wall.fix(mesh.patch("sym_y"), Axis::y);
+    wall.pressure(mesh.patch("inner"), exact.pressure(1.1));
+    const StaticsReport report = wall.solve();
+    REQUIRE(report);
+    double stretch = 0;
+    const auto inner = mesh::patch_nodes(mesh.patch("inner"));
+    for (const Index k : inner)
+      stretch += (mesh.nodes.col(k) + wall.displacement().col(k)).head<2>().norm() /
+                 (exact.inner * static_cast<double>(inner.size()));
+    MESSAGE("inner stretch " << stretch << ", " << report.solve.iterations << " iterations");
+    CHECK(report.steps == 1);
+    CHECK(report.cuts == 0);
+    CHECK(report.solve.iterations <= 6);
+    CHECK(stretch == doctest::Approx(1.1).epsilon(1e-3));
   }
 
   TEST_CASE("solid: nearly incompressible membranes bend alike from nu 0.4999 to 0.4999999") {
