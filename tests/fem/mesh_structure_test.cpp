@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which nodes share a cell, chunks of cells in colours, and packs between lanes and rows.
+#include "tunica/core/error.hpp"
 #include "tunica/fem/cell_chunks.hpp"
 #include "tunica/fem/lane_transpose.hpp"
 #include "tunica/fem/node_graph.hpp"
@@ -115,6 +116,17 @@ TEST_SUITE("unit") {
     Connectivity<4> folded(4, 1);  // a cell that has a node twice
     folded << 0, 1, 1, 2;
     check(folded, 3);
+  }
+
+  TEST_CASE("fem: a cell with a node that is not there is refused by its numbers") {
+    auto mesh = meshing::box_tets({.cells = {2, 1, 1}});
+    mesh.cells(2, 5) = mesh.node_count();
+    const auto refused = [&](const char* sentence) {
+      CHECK_THROWS_WITH_AS((void)fem::node_graph(mesh.cells, mesh.node_count()), sentence, MeshError);
+    };
+    refused("cell 5 names node 12; the mesh has 12");
+    mesh.cells(0, 3) = -1;
+    refused("cell 3 names node -1; the mesh has 12");
   }
 
   TEST_CASE("fem: chunks take each cell once and those of a colour share no node") {

@@ -23,6 +23,7 @@ class CellChunks {
   CellChunks(const Connectivity<Nodes>& cells, Index node_count, Index lanes = 1)
       : cells_(static_cast<Index>(cells.cols())) {
     constexpr int colours = 64;  // a chunk that finds none of them free gets a colour of its own
+    // 64 chunks or more where the mesh allows: each colour has work for several threads.
     size_ = (std::clamp<Index>(cells_ / 64, 16, 1024) + lanes - 1) / lanes * lanes;
     const Index chunks = (cells_ + size_ - 1) / size_;
     std::vector<std::uint64_t> used(static_cast<std::size_t>(node_count), 0);

@@ -2,11 +2,13 @@
 // Which nodes of a mesh share a cell: the sparsity pattern of everything that is assembled on it.
 #pragma once
 
+#include "tunica/core/error.hpp"
 #include "tunica/core/expect.hpp"
 #include "tunica/core/types.hpp"
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace tunica::fem {
@@ -29,8 +31,23 @@ struct NodeGraph {
   }
 };
 
+namespace detail {
+/// MeshError names the first cell with a node that is not there.
+template <int Nodes>
+void require_nodes(const Connectivity<Nodes>& cells, Index node_count) {
+  const auto missing = [&](Index n) { return n < 0 || n >= node_count; };
+  const Index* const end = cells.data() + cells.size();
+  const Index* const found = std::find_if(cells.data(), end, missing);
+  if (found != end)
+    throw MeshError("cell " + std::to_string((found - cells.data()) / Nodes) + " names node " +
+                    std::to_string(*found) + "; the mesh has " + std::to_string(node_count));
+}
+}  // namespace detail
+
+/// The graph of a mesh. MeshError names the first cell with a node that the mesh does not have.
 template <int Nodes>
 [[nodiscard]] NodeGraph node_graph(const Connectivity<Nodes>& cells, Index node_count) {
+  detail::require_nodes(cells, node_count);
   const auto n = static_cast<std::size_t>(node_count);
   std::vector<Index> first(n + 1, 0), cell_of(static_cast<std::size_t>(cells.size()));
   for (Eigen::Index k = 0; k < cells.size(); ++k) ++first[static_cast<std::size_t>(cells.data()[k]) + 1];
