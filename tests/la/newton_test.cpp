@@ -4,8 +4,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 using namespace tunica;
 
@@ -43,6 +45,35 @@ struct Springs {
     la::SparseMatrix A(b.size(), b.size());
     A.setIdentity();
     return A;
+  }
+};
+
+/// The slope of |x|^2/2 + k/2 sum <b.x - e>_+^2 - f.x: cables that pull when they are taut alone, each k
+/// times as stiff as the ground. The plain iteration goes to and fro between sets of taut cables.
+template <bool Energy>
+struct Cables {
+  double k;
+  Eigen::MatrixXd b;  // a row a cable
+  Eigen::VectorXd slack, f, r_{};
+
+  [[nodiscard]] Eigen::VectorXd taut(const Eigen::VectorXd& x) const {
+    return (b * x - slack).unaryExpr([](double e) { return e > 0 ? 1.0 : 0.0; });
+  }
+  la::ResidualInfo residual(const Eigen::VectorXd& x, Eigen::VectorXd& r, double) {
+    r_ = x + k * b.transpose() * taut(x).cwiseProduct(b * x - slack) - f;
+    r = r_;
+    return {.scale = f.norm(), .merit = r.norm()};
+  }
+  void direction(const Eigen::VectorXd&) const {}
+  [[nodiscard]] double work(const Eigen::VectorXd& dx) const requires(Energy) { return r_.dot(dx); }
+  void tangent(const Eigen::VectorXd& x, la::SparseMatrix& A) const {
+    const Eigen::MatrixXd K =
+        Eigen::MatrixXd::Identity(x.size(), x.size()) + k * b.transpose() * taut(x).asDiagonal() * b;
+    for (Eigen::Index i = 0; i < K.rows(); ++i)
+      for (Eigen::Index j = 0; j < K.cols(); ++j) A.coeffRef(i, j) = K(i, j);
+  }
+  [[nodiscard]] la::SparseMatrix pattern() const {
+    return Eigen::MatrixXd::Ones(f.size(), f.size()).sparseView();
   }
 };
 
@@ -89,6 +120,58 @@ TEST_SUITE("unit") {
     newton.forget();
     REQUIRE(newton.solve(logarithm, x));
     CHECK((x - Eigen::Vector2d(1, 1)).norm() < 1e-12);
+  }
+
+  TEST_CASE("la: Newton finds which cables are taut where the stiffness jumps a hundred thousandfold") {
+    constexpr int n = 40, cables = 60;
+    int most = 0, plain = 0, tried = 0;
+    for (const double k : {1e1, 1e3, 1e5})
+      for (unsigned seed = 1; seed <= 10; ++seed, ++tried) {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> any(-1, 1);
+        const auto noise = [&] { return any(random); };
+        const Eigen::MatrixXd b = Eigen::MatrixXd::NullaryExpr(cables, n, noise);
+        const Eigen::VectorXd slack = Eigen::VectorXd::Zero(cables),
+                              f = Eigen::VectorXd::NullaryExpr(n, noise);
+        Cables<true> problem{.k = k, .b = b, .slack = slack, .f = f};  // all about to be taut
+        Cables<false> blind{.k = k, .b = b, .slack = slack, .f = f};
+        la::Newton<la::Ldlt> newton({.tolerance = 1e-9, .max_iterations = 100});
+        Eigen::VectorXd x = Eigen::VectorXd::Zero(n), y = x;
+        const auto report = newton.solve(problem, x);
+        CAPTURE(k);
+        CAPTURE(seed);
+        REQUIRE(report);
+        most = std::max(most, report.solve.iterations);
+        plain += newton.solve(blind, y) ? 1 : 0;
+      }
+    MESSAGE("at most " << most << " iterations; without the work of the residual " << plain << " of " << tried
+                       << " are solved");
+    CHECK(most <= cables);  // not more than one for each cable
+  }
+
+  TEST_CASE("la: a step is taken to where its work ends") {
+    // A spring that is a thousand times as stiff beyond a thousandth of the step.
+    const auto g = [](double s) { return -1 + s + 1e3 * std::max(0.0, s - 1e-3); };
+    la::StepSearch search(g(0));
+    CHECK(search.goes_down());
+    CHECK(search.takes(-0.9));
+    CHECK(search.takes(1));
+    CHECK_FALSE(search.takes(g(1)));
+    double s = 1;
+    int tries = 0;
+    while (!search.takes(g(s)) && ++tries < 20) s = search.next(s, g(s));
+    MESSAGE("found " << s << " in " << tries << " tries");
+    CHECK(tries <= 6);
+    CHECK(std::abs(g(s)) <= 0.5);
+    // Nothing is known beyond 1e-5 of the step: it is shortened until there is something.
+    la::StepSearch blind(-1);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto h = [&](double t) { return t > 1e-5 ? nan : -1 + t; };
+    for (s = 1, tries = 0; !std::isfinite(h(s)) && tries < 20; ++tries) s = blind.next(s, h(s));
+    CHECK(tries <= 9);
+    CHECK(blind.next(s, h(s)) > s);
+    CHECK(blind.safe() == s);
+    CHECK_FALSE(la::StepSearch(0.1).goes_down());
   }
 
   TEST_CASE("la: Newton ends on NaN and on a start outside of the domain and on its last iteration") {

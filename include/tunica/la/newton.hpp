@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tunica/la/linear_solver.hpp"
+#include "tunica/la/step_search.hpp"
 
 #include <Eigen/Core>
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -53,14 +55,15 @@ struct NewtonOptions {
 struct [[nodiscard]] NewtonReport {
   SolveReport solve;            // residual: |r| / scale at the end
   std::vector<double> history;  // |r| / scale at the start and after each iteration
+  double rounding = 0;          // what of |r| / scale is rounding, at the end
   int factorisations = 0;
   bool inadmissible = false;  // it ended because no step led back to where the problem is defined
 
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
 };
 
-/// Slope of the convergence at its end: log(e3/e2) / log(e2/e1) of the last three residuals of the
-/// history that lie above `floor`; 2 for Newton with a consistent tangent. 0 if there are not three.
+/// Slope of the last ratios, log(e3/e2) / log(e2/e1), of the last three residuals of the history that lie
+/// above `floor`: 2 for Newton with a consistent tangent once e3 ~ C e2^2. 0 if there are not three.
 [[nodiscard]] inline double observed_order(const std::vector<double>& history, double floor) {
   std::vector<double> e;
   for (const double h : history)
@@ -68,6 +71,11 @@ struct [[nodiscard]] NewtonReport {
   if (e.size() < 3) return 0;
   const std::size_t n = e.size();
   return std::log(e[n - 1] / e[n - 2]) / std::log(e[n - 2] / e[n - 3]);
+}
+/// The same above ten times what a report says is rounding: a tenth of a residual bends the slope by 1 %.
+template <class Report>
+[[nodiscard]] double observed_order(const Report& report) {
+  return observed_order(report.history, 10 * report.rounding);
 }
 
 /// Keeps the solver, its analysis and its factors from one call to the next: what a solver can reuse of
@@ -94,13 +102,14 @@ class Newton {
   template <NonlinearProblem Problem>
   NewtonReport solve(Problem& problem, Eigen::VectorXd& x) {
     NewtonReport report;
+    ResidualInfo info = problem.residual(x, r_, no_step);
     const auto ended = [&](Status status, double residual) {
       report.solve.status = status;
       report.solve.residual = residual;
+      report.rounding = std::max(info.rounding / info.scale, rounding_of_sums);
       if (status != Status::converged) forget();
       return report;
     };
-    ResidualInfo info = problem.residual(x, r_, no_step);
     double size = r_.norm();
     double relative = size > 0 ? size / info.scale : size;
     report.history.push_back(relative);
@@ -120,6 +129,7 @@ class Newton {
       ++k;
       problem.direction(dx_);
       const double old_merit = info.merit;
+      StepSearch search(work(problem));
       double s = 1;
       bool refused = false;  // by the line search, on account of an old tangent
       for (int cut = 0;; ++cut) {
@@ -127,16 +137,23 @@ class Newton {
         info = problem.residual(trial_, r_, s);
         size = r_.norm();
         const bool usable = info.admissible && std::isfinite(size);
-        if (usable && info.merit <= options_.growth * old_merit) break;
+        const bool calm = usable && info.merit <= options_.growth * old_merit;
+        const double g = usable ? work(problem) : std::numeric_limits<double>::quiet_NaN();
+        if (search.goes_down() ? (cut == 0 && calm) || search.takes(g) || (cut >= options_.max_cuts && g < 0)
+                               : calm)
+          break;
         if (!made_now) {
           refused = true;
           break;
         }
-        if (cut == options_.max_cuts) {
+        if (cut > options_.max_cuts || (cut == options_.max_cuts && !(search.safe() > 0))) {
           report.inadmissible = !info.admissible;
           return ended(Status::diverged, relative);
         }
-        s *= 0.5;
+        if (!search.goes_down())
+          s *= 0.5;
+        else
+          s = cut == options_.max_cuts ? search.safe() : search.next(s, g);
       }
       if (refused) {
         forget();
@@ -166,6 +183,14 @@ class Newton {
   }
 
  private:
+  static constexpr double rounding_of_sums = 32 * std::numeric_limits<double>::epsilon();
+
+  /// Of the last residual along the step; 0 where a problem has none.
+  template <class Problem>
+  [[nodiscard]] double work(const Problem& problem) const {
+    if constexpr (requires { problem.work(dx_); }) return problem.work(dx_);
+    return 0;
+  }
   template <class Problem>
   bool factorise(Problem& problem, const Eigen::VectorXd& x) {
     if constexpr (requires { solver_.factorise(problem.tangent_blocks(x)); }) {

@@ -5,6 +5,7 @@
 #include "tunica/la/direct.hpp"
 #include "tunica/la/newton.hpp"
 #include "tunica/solid/body.hpp"
+#include "tunica/solid/follow.hpp"
 #include "tunica/solid/statics_report.hpp"
 
 #include <Eigen/Core>
@@ -97,8 +98,8 @@ class Statics {
   /// Whether the loads are reached.
   [[nodiscard]] bool done() const { return load_ >= 1; }
 
-  /// The next load step that holds, with as many cuts as it takes; not beyond the load `limit`. `diverged` (or
-  /// Newton's status) if the steps become too small; displacement() is then the last equilibrium found.
+  /// The next load step that holds, with as many cuts as it takes; not beyond the load `limit`. `diverged`
+  /// (or Newton's status) if the steps become too small; displacement() is then the last equilibrium found.
   StaticsStep step(double limit = 1) {
     StaticsStep report{.load = load_};
     double length = std::min(1.0, step_);
@@ -109,6 +110,7 @@ class Statics {
       const la::NewtonReport newton = advance(problem, u);
       report.iterations += newton.solve.iterations;
       report.history = newton.history;
+      report.rounding = newton.rounding;
       report.solve = newton.solve;
       if (newton) {
         step_ = newton.solve.iterations <= options_.easy_iterations ? length * options_.growth : length;
@@ -137,6 +139,7 @@ class Statics {
       const StaticsStep& last = report.path.back();
       report.solve.iterations += last.iterations;
       report.history = last.history;
+      report.rounding = last.rounding;
       report.cuts += last.cuts;
       report.load = last.load;
       if (last.inverted_cell >= 0) report.inverted_cell = last.inverted_cell;
@@ -222,6 +225,11 @@ class Statics {
         .admissible = admissible, .scale = scale, .rounding = body_.rounding(), .merit = predicted_.norm()};
   }
   void direction(const Eigen::VectorXd& du) { body_.direction(du); }
+  /// Of the last residual along du, with the pressures predicted for it [J].
+  [[nodiscard]] double work(const Eigen::VectorXd& du) const {
+    const Eigen::Index moved = 3 * body_.mesh().node_count();
+    return predicted_.head(moved).dot(du.head(moved));
+  }
   void tangent(const Eigen::VectorXd& u, double load, la::SparseMatrix& A) const {
     body_.tangent(u, pressures(load), {.symmetric_load = Solver::symmetric}, A);
   }
@@ -242,6 +250,7 @@ class Statics {
       return statics.residual(u, load, r, step);
     }
     void direction(const Eigen::VectorXd& du) { statics.direction(du); }
+    [[nodiscard]] double work(const Eigen::VectorXd& du) const { return statics.work(du); }
     void tangent(const Eigen::VectorXd& u, la::SparseMatrix& A) { statics.tangent(u, load, A); }
     [[nodiscard]] const auto& tangent_blocks(const Eigen::VectorXd& u) {
       return statics.body_.tangent_blocks(u, statics.pressures(load), {.symmetric_load = Solver::symmetric});
@@ -267,24 +276,13 @@ class Statics {
     for (Index k = 0; k < body_.unknowns(); ++k)
       if (body_.fixed(k)) d[k] = (1 - t) * u_start_[k] + t * prescribed_end_[k] - u[k];
     newton_.forget();
-    if (d.squaredNorm() > 0 && !follow(problem, u, d)) {
+    if (d.squaredNorm() > 0 && !follow(newton_, problem, u, d)) {
       la::NewtonReport failed;
       failed.solve.status = Status::diverged;
+      failed.inadmissible = body_.inverted_cell() >= 0;
       return failed;
     }
     return newton_.solve(problem, u);
-  }
-
-  bool follow(Problem& problem, Eigen::VectorXd& u, const Eigen::VectorXd& d) {
-    // K d by a difference of the forces along d: a length of 1e-7 of it is exact enough for a start.
-    constexpr double length = 1e-7;
-    Eigen::VectorXd r0, r1, dx;
-    if (!problem.residual(u, r0, la::no_step).admissible ||
-        !problem.residual(u + length * d, r1, la::no_step).admissible)
-      return false;
-    if (!newton_.linear(problem, u, (r0 - r1) / length - r0, dx)) return false;
-    u += d + dx;
-    return true;
   }
 
   Body<C, Material> body_;

@@ -26,6 +26,7 @@ struct [[nodiscard]] StaticsStep {
   int iterations = 0;             // of Newton, with those of the failed attempts
   Index inverted_cell = -1;       // where J <= 0 in the last failed attempt, -1 if nowhere
   std::vector<double> history{};  // |r| / scale of the last Newton solve
+  double rounding = 0;            // what of that is rounding
 
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
 };
@@ -37,6 +38,7 @@ struct [[nodiscard]] StaticsReport {
   int cuts = 0;                     // steps rolled back and halved
   Index inverted_cell = -1;         // where J <= 0 in the last failed step, -1 if nowhere
   std::vector<double> history{};    // |r| / scale of the last Newton solve
+  double rounding = 0;              // what of that is rounding
   std::vector<StaticsStep> path{};  // each step
 
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
