@@ -9,20 +9,21 @@
 namespace tunica::solid {
 
 struct AugmentedOptions {
-  double tolerance = 1e-8;  // on |v/V - 1| of every cell
+  double tolerance = 1e-8;  // on theta - 1 of every cell, |v/V - 1| with MeanVolume: see Interior::augment
   int most = 20;            // augmentations
 };
 
 struct [[nodiscard]] AugmentedReport {
-  SolveReport solve;                  // iterations: of Newton in all; residual: largest |v/V - 1|
-  std::vector<double> volume_errors;  // largest |v/V - 1| after each solve
+  SolveReport solve;                  // iterations: of Newton in all; residual: the last of these errors
+  std::vector<double> volume_errors;  // the largest of all cells after each solve
 
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
 };
 
 /// Solves, makes multipliers of the pressures and solves again until the volumes are kept: each round takes
 /// their error down by about the ratio of the wall's stiffness to kappa, so kappa = 1e3 mu does what 1e9
-/// would, and its tangents are as good as those of 1e3. `wall`: a Statics whose cells keep a mean volume.
+/// would, and its tangents are as good as those of 1e3. `wall`: a Statics whose cells keep pressures
+/// (MeanVolume, LinearVolume, FBar of a pair).
 /// `stalled` when the error no longer falls, `max_iterations` after `most` rounds.
 template <class Wall>
 AugmentedReport solve_incompressible(Wall& wall, AugmentedOptions options = {}) {
