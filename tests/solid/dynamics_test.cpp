@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tunica/solid/dynamics.hpp"
 #include "tunica/core/parallel.hpp"
+#include "tunica/meshing/box.hpp"
 #include "tunica/meshing/tube.hpp"
 #include "tunica/solid/laws.hpp"
 #include "tunica/solid/statics.hpp"
@@ -54,6 +55,35 @@ struct Store {
 }  // namespace
 
 TEST_SUITE("unit") {
+  TEST_CASE("solid: dynamics with nodal pressures starts at rest from an equilibrium") {
+    const auto mesh = meshing::box_tets(meshing::Block{.cells = {4, 4, 4}, .hi = Vec3::Constant(0.01)});
+    const Hyperelastic law{NeoHooke{.c10 = 100e3}, Quadratic{.kappa = 1e9}};
+    const auto held_and_pressed = [&](auto& wall) {
+      wall.fix(mesh.patch("z0"));
+      wall.pressure(mesh.patch("z1"), 20e3);
+    };
+    Statics loaded{mesh, with<NodalPressure>(law)};
+    held_and_pressed(loaded);
+    REQUIRE(loaded.solve());
+    Dynamics wall{mesh, with<NodalPressure>(law), 1000.0, DynamicsOptions{.newton = {.tolerance = 1e-11}}};
+    held_and_pressed(wall);
+    const Points<3> still = Points<3>::Zero(3, mesh.node_count());
+    REQUIRE(wall.start(loaded.displacement(), still));
+    // 20 kPa on 1 cm of 1000 kg/m3 that nothing holds back would be 2000 m/s2.
+    const double left = wall.nodal_acceleration().cwiseAbs().maxCoeff();
+    MESSAGE("acceleration of the equilibrium " << left << " m/s2");
+    CHECK(left < 1e-4);
+    // The pressures are those of the static state, and it stays where it is.
+    const Points<3> u = loaded.displacement();
+    for (int step = 0; step < 3; ++step) REQUIRE(wall.step(1e-3));
+    CHECK((wall.nodal_displacement() - u).norm() < 1e-7 * u.norm());
+    CHECK(wall.nodal_velocity().cwiseAbs().maxCoeff() < 1e-6);
+    // Let go, it moves.
+    wall.pressure(0, 0);
+    REQUIRE(wall.start(loaded.displacement(), still));
+    CHECK(wall.nodal_acceleration().cwiseAbs().maxCoeff() > 100);
+  }
+
   TEST_CASE("solid: dynamics from a restored state reaches the same end however it got there") {
     const auto mesh = small_tube();
     auto once = held(mesh), twice = held(mesh);

@@ -9,6 +9,7 @@
 #include "tunica/solid/dynamics_options.hpp"
 #include "tunica/solid/energy_balance.hpp"
 #include "tunica/solid/history.hpp"
+#include "tunica/solid/nodal_pressures.hpp"
 #include "tunica/solid/stress.hpp"
 
 #include <Eigen/Core>
@@ -101,6 +102,11 @@ class Dynamics {
     state_.f = load_;
     state_.p = pressure_;
     body_.clear_fixed(state_.v);
+    Solver& solver = newton_.borrow_solver();
+    if constexpr (Body<C, Material>::per_node == 4)  // the pressures that belong to u
+      if (const auto report = nodal_pressures(body_, pressure_, solver, state_.u);
+          !report && body_.inverted_cell() < 0)
+        return report;
     Eigen::VectorXd f, predicted, external = load_;
     const bool admissible = body_.internal_forces(state_.u, la::no_step, f, predicted);
     inverted_cell_ = body_.inverted_cell();
@@ -111,7 +117,6 @@ class Dynamics {
     body_.clear_fixed(external);
     la::SparseMatrix M = body_.pattern();
     body_.tangent(state_.u, pressure_, {.stiffness = 0, .mass = 1}, M);
-    Solver& solver = newton_.borrow_solver();
     solver.analyse(M);
     if (const auto report = solver.factorise(M); !report) return report;
     const auto report = solver.solve(external, state_.a);
@@ -140,12 +145,7 @@ class Dynamics {
       advance(body_.laws(), body_, u);
     }
     before_ = {.u = state_.u, .v = state_.v};
-    const Eigen::VectorXd v = problem.velocity(u), a = problem.acceleration(u);
-    state_.v = v;
-    state_.a = a;
-    state_.u = u;
-    state_.f = load_;
-    state_.p = pressure_;
+    state_ = {u, problem.velocity(u), problem.acceleration(u), load_, pressure_, state_.history};
     iterate_ = u;
     iterate_dt_ = dt;
     return report.solve;
@@ -170,9 +170,9 @@ class Dynamics {
   [[nodiscard]] Points<3> displacement() const { return at_interface(state_.u); }
   [[nodiscard]] Points<3> velocity() const { return at_interface(state_.v); }
   /// All nodes: 3 x nodes [m], [m/s], [m/s2].
-  [[nodiscard]] Points<3> nodal_displacement() const { return at_nodes(state_.u); }
-  [[nodiscard]] Points<3> nodal_velocity() const { return at_nodes(state_.v); }
-  [[nodiscard]] Points<3> nodal_acceleration() const { return at_nodes(state_.a); }
+  [[nodiscard]] Points<3> nodal_displacement() const { return body_.at_nodes(state_.u); }
+  [[nodiscard]] Points<3> nodal_velocity() const { return body_.at_nodes(state_.v); }
+  [[nodiscard]] Points<3> nodal_acceleration() const { return body_.at_nodes(state_.a); }
 
   /// Von Mises stress of the Cauchy stress, one number a cell or node [Pa].
   [[nodiscard]] Eigen::VectorXd cell_von_mises() const { return von_mises(cell_stress(body_, state_.u)); }
@@ -270,7 +270,6 @@ class Dynamics {
     [[nodiscard]] la::SparseMatrix pattern() const { return d.body_.pattern(); }
   };
 
-  [[nodiscard]] Points<3> at_nodes(const Eigen::VectorXd& x) const { return body_.at_nodes(x); }
   [[nodiscard]] Points<3> at_interface(const Eigen::VectorXd& x) const {
     Points<3> y(3, static_cast<Eigen::Index>(interface_nodes_.size()));
     for (std::size_t k = 0; k < interface_nodes_.size(); ++k)
