@@ -140,16 +140,21 @@ struct Kernel {
   template <class Law, class S>
   static void action(const Law& law, const Nodal<S>& X, const Nodal<S>& u, const Data<Law, S>* data,
                      const Nodal<S>& v, Nodal<S>& Kv) {
+    action<Law, S>(law, X, u, data, nullptr, v, Kv);
+  }
+  template <class Law, class S>
+  static void action(const Law& law, const Nodal<S>& X, const Nodal<S>& u, const Data<Law, S>* data,
+                     const Tensor<S>* stored, const Nodal<S>& v, Nodal<S>& Kv) {
     Forces<S> out;
     Cure::start(out);
-    const Modes<S> modes_at(X, nullptr);
+    const Modes<S> modes_at(X, stored);
     Centre<S> centre(X, u);
-    const auto p = Cure::template pressures<Law, S>(law, X, u, nullptr, modes_at, centre);
+    const auto p = Cure::template pressures<Law, S>(law, X, u, stored, modes_at, centre);
     S divergence(0);
     Pressures<S> change{};  // rate_i . v
     if constexpr (bar) divergence = centre.divergence(v);
     for (std::size_t q = 0; q < points; ++q) {
-      const Here<S> here(X, u, nullptr, q, modes_at, out);
+      const Here<S> here(X, u, stored, q, modes_at, out);
       Response<S> r = solid::response(part(law), Cure::seen(here, centre), point<Law, S>(data, q));
       Cure::cure(here, p, q, modes_at, centre, r);
       const Tensor<S> H = here.at.gradient(v);
