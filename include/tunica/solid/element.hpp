@@ -165,13 +165,4 @@ template <mesh::Cell C, class Rule, class S>
   return det;
 }
 
-/// Volume of the element with nodes x: the current one of x = X + u [m^dim].
-template <mesh::Cell C, class Rule, class S>
-[[nodiscard]] TUNICA_INLINE S element_volume(const NodeVectors<S, C>& x) {
-  S volume(0);
-  for (std::size_t q = 0; q < Rule::size; ++q)
-    volume += map_determinant<C, Rule, S>(x, q) * S(Rule::weights[q]);
-  return volume;
-}
-
 }  // namespace tunica::solid
