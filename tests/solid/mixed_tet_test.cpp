@@ -4,6 +4,7 @@
 #include "tunica/core/counted.hpp"
 #include "tunica/core/dual.hpp"
 #include "tunica/core/pack_math.hpp"
+#include "tunica/core/parallel.hpp"
 #include "tunica/solid/fibre_laws.hpp"
 #include "tunica/solid/guccione_law.hpp"
 #include "tunica/solid/isochoric_law.hpp"
@@ -171,6 +172,50 @@ TEST_SUITE("unit") {
                                       Quadratic{.kappa = std::numeric_limits<double>::infinity()}};
     CHECK(MixedTet::energy(incompressible, moduli, x.X, x.u, x.q, {}) ==
           doctest::Approx(-p * p / (2 * 80) * volume() * (0.1 - 0.0625)).epsilon(1e-12));
+  }
+
+  TEST_CASE("solid: tetrahedra with nodal pressures under two laws are two bodies on any number of threads") {
+    auto mesh = test::box_of<mesh::Tet4>(meshing::Block{.cells = {5, 4, 4}});
+    mesh.region_names = {"a", "b"};
+    for (Index e = 0; e < mesh.cell_count(); ++e) mesh.region.push_back((e * 5 / 3) % 2);
+    const Hyperelastic soft{NeoHooke{.c10 = 1}, SimoTaylor{.kappa = 200}};
+    auto stiff = soft;
+    stiff.isochoric.c10 = 9;
+    stiff.volumetric.kappa = 900;
+    Body whole{mesh, with<NodalPressure>(soft), 0.0, Mass::lumped};
+    whole.laws().material(1, stiff);
+    Eigen::VectorXd u(whole.unknowns()), f, part, predicted, sum = Eigen::VectorXd::Zero(u.size()), Ku = sum;
+    for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = 0.01 * std::sin(1.7 * static_cast<double>(k));
+    REQUIRE(whole.internal_forces(u, la::no_step, f, predicted));
+    la::SparseMatrix K = whole.pattern();
+    whole.tangent(u, Eigen::VectorXd(0), {}, K);
+    double energy = 0;
+    for (const Index region : {0, 1}) {
+      auto half = mesh;
+      half.region.clear();
+      Eigen::Index count = 0;
+      for (Index e = 0; e < mesh.cell_count(); ++e)
+        if (mesh.region[static_cast<std::size_t>(e)] == region) half.cells.col(count++) = mesh.cells.col(e);
+      half.cells.conservativeResize(Eigen::NoChange, count);
+      Body body{half, with<NodalPressure>(soft), 0.0, Mass::lumped};  // one scale of pressures for both
+      if (region == 1) body.laws().material(0, stiff);
+      REQUIRE(body.internal_forces(u, la::no_step, part, predicted));
+      sum += part;
+      la::SparseMatrix A = body.pattern();
+      body.tangent(u, Eigen::VectorXd(0), {}, A);
+      Ku += A * u;
+      energy += body.strain_energy(u);
+    }
+    CHECK((f - sum).norm() < 1e-14 * f.norm());
+    CHECK((K * u - Ku).norm() < 1e-14 * Ku.norm());
+    CHECK(whole.strain_energy(u) == doctest::Approx(energy).epsilon(1e-14));
+    thread_count() = 2;
+    REQUIRE(whole.internal_forces(u, la::no_step, part, predicted));
+    la::SparseMatrix A = whole.pattern();
+    whole.tangent(u, Eigen::VectorXd(0), {}, A);
+    thread_count() = 1;
+    CHECK(part == f);
+    CHECK((A.coeffs() == K.coeffs()).all());
   }
 
   TEST_CASE("solid: nodal pressures know the shear modulus of a law with a frame of fibres") {

@@ -13,6 +13,7 @@
 #include <doctest/doctest.h>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -226,6 +227,48 @@ TEST_SUITE("unit") {
     auto bare = test::wall_of_tube(mesh, with<NodalPressure>(law), p);
     REQUIRE(bare.solve());
     CHECK(bare.displacement().cwiseAbs().maxCoeff() > 0.03 * inner);
+    // In motion it rests, from its first step on: the pressures that belong to it are found at the start.
+    Eigen::VectorXd found = wall.unknowns();
+    found.tail(mesh.node_count()).setZero();
+    wall.body().inside().settle(found);
+    CHECK((found - wall.unknowns()).norm() < 1e-6 * wall.unknowns().norm());
+    Dynamics moving{mesh, with<NodalPressure>(law), 1100.0};
+    for (const char* end : {"z0", "z1"}) moving.fix(mesh.patch(end), Axis::z);
+    moving.fix(mesh.patch("y0"), Axis::y);
+    moving.fix(mesh.patch("y1"), Axis::x);
+    moving.pressure(mesh.patch("x0"), p);
+    moving.laws().prestress(wall.body().laws().prestress());
+    REQUIRE(moving.start(wall.displacement(), Points<3>::Zero(3, mesh.node_count())));
+    CHECK(moving.nodal_acceleration().cwiseAbs().maxCoeff() < 1e-5 * p / (1100 * (outer - inner)));
+    for (int k = 0; k < 10; ++k) REQUIRE(moving.step(1e-4));
+    const double drifted = (moving.nodal_displacement() - wall.displacement()).cwiseAbs().maxCoeff();
+    MESSAGE("in ten steps it moves by " << drifted / (2 * outer) << " of the diameter");
+    CHECK(drifted < 1e-6 * outer);
+  }
+
+  TEST_CASE(
+      "solid: tetrahedra with nodal pressures start to swing from a stretched state with all its energy") {
+    const auto mesh = meshing::box_tets(meshing::Block{.cells = {2, 2, 4}, .hi = Vec3(2e-3, 2e-3, 8e-3)});
+    const Hyperelastic law{Yeoh{.c10 = 174e3, .c20 = 1880e3}, SimoTaylor{.kappa = 348e5}};
+    Statics held{mesh, with<NodalPressure>(law)};
+    held.fix(mesh.patch("z0"));
+    for (const Index n : mesh::patch_nodes(mesh.patch("z1"))) held.prescribe(n, Axis::x, 1e-3);
+    REQUIRE(held.solve());
+    Dynamics rod{mesh, with<NodalPressure>(law), 1100.0};
+    rod.fix(mesh.patch("z0"));
+    REQUIRE(rod.start(held.displacement(), Points<3>::Zero(3, mesh.node_count())));
+    const double first = rod.strain_energy(), there = held.body().strain_energy(held.unknowns());
+    double most = 0, kinetic = 0;
+    for (int k = 0; k < 40; ++k) {
+      REQUIRE(rod.step(5e-5));
+      most = std::max(most, rod.strain_energy() + rod.kinetic_energy());
+      kinetic = std::max(kinetic, rod.kinetic_energy());
+    }
+    MESSAGE("energy at first " << first << " J, of the held rod " << there << " J; later at most " << most
+                               << " J, of it in motion " << kinetic << " J");
+    CHECK(first == doctest::Approx(there).epsilon(1e-9));
+    CHECK(most < 1.02 * first);
+    CHECK(kinetic > 0.5 * first);
   }
 
   TEST_CASE("solid: a viscoelastic fibrous wall remembers its prestress as long past and rests in it") {
