@@ -25,7 +25,6 @@
 #include "tunica/meshing/untangle.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>

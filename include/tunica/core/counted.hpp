@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include <cmath>
-#include <concepts>
+#include <compare>
 #include <cstdint>
 #include <type_traits>
 

@@ -9,7 +9,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 namespace tunica::fem {

@@ -8,7 +8,6 @@
 #include "tunica/mesh/middle_nodes.hpp"
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <string>
 #include <type_traits>
