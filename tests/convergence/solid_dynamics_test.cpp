@@ -65,8 +65,8 @@ TEST_SUITE("convergence") {
         MESSAGE("rho_inf " << rho << ": displacement error " << errors[k] << " order " << order
                            << ", velocity " << velocity_errors[k] << " order " << velocity_order);
         if (k + 1 == errors.size()) {
-          CHECK(order == doctest::Approx(2).epsilon(0.1));
-          CHECK(velocity_order == doctest::Approx(2).epsilon(0.1));
+          CHECK(order == doctest::Approx(2).epsilon(0.05).scale(0));
+          CHECK(velocity_order == doctest::Approx(2).epsilon(0.075).scale(0));
         }
       }
     }
@@ -143,7 +143,7 @@ TEST_SUITE("convergence") {
       const double order = std::log2(errors[1] / errors[2]);
       MESSAGE(std::string(mass == solid::Mass::lumped ? "lumped: " : "consistent: ")
               << errors[1] << " " << errors[2] << " order " << order);
-      CHECK(order == doctest::Approx(2).epsilon(0.1));
+      CHECK(order == doctest::Approx(2).epsilon(0.05).scale(0));
     }
   }
 

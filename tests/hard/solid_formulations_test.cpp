@@ -381,7 +381,7 @@ TEST_SUITE("hard") {
       const Tip tip = told("Hex8", n, cook<mesh::Hex8>(n, given, 1, Faces::free, of_forces), 14.33);
       CHECK(std::abs(tip.u - known) < within);
       CHECK(tip.slope >= 1.9);
-      if (n == 32) CHECK(tip.u == doctest::Approx(14.33).epsilon(5e-3));
+      if (n == 32) CHECK(tip.u == doctest::Approx(14.33).epsilon(5e-3).scale(0));
     }
     const Tip fine = told("Hex27", 8, cook<mesh::Hex27>(8, given, 1, Faces::free, of_forces), 14.33);
     CHECK(std::abs(fine.u - 14.30059) < 1e-3);
