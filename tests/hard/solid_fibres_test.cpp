@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "support/newton_order.hpp"
 #include "tunica/meshing/box.hpp"
 #include "tunica/meshing/tube.hpp"
 #include "tunica/solid/fibre_laws.hpp"
@@ -138,15 +139,20 @@ TEST_SUITE("hard") {
       REQUIRE(report);
       MESSAGE((std::decay_t<decltype(wall)>::linear_solver::symmetric ? std::string("symmetric part: ")
                                                                       : std::string("all of it: "))
-              << report.solve.iterations << " iterations in " << report.steps << " steps, order "
-              << la::observed_order(report.history, 1e-9));
-      return std::pair{report, wall.displacement()};
+              << report.solve.iterations << " iterations in " << report.steps << " steps");
+      const Points<3> u = wall.displacement();
+      if constexpr (!std::decay_t<decltype(wall)>::linear_solver::symmetric) {
+        const auto order = test::newton_order(wall);
+        MESSAGE("with all of its stiffness of slope " << order.slope << " in " << order.ratios << " ratios");
+        CHECK(order.slope >= 1.9);
+        CHECK(order.ratios >= 2);
+      }
+      return std::pair{report, u};
     };
     using Law = Hyperelastic<Yeoh, Quadratic>;
     const auto [half, a] = press(Statics<mesh::Hex8, Law, la::Ldlt>{mesh, law});
     const auto [whole, b] = press(Statics<mesh::Hex8, Law, la::Lu>{mesh, law});
     CHECK((a - b).norm() < 1e-6 * b.norm());
-    CHECK(la::observed_order(whole.history, 1e-9) >= 1.9);
     CHECK(whole.solve.iterations <= half.solve.iterations);
   }
 
