@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The tangent of a thick wall, near incompressible and less so, by each linear solver: wall_solvers [CELLS].
 #include "support/stopwatch.hpp"
+#include "tunica/la/cell_patches.hpp"
 #include "tunica/la/direct.hpp"
 #include "tunica/la/iterative.hpp"
 #include "tunica/la/multigrid.hpp"
@@ -129,6 +130,10 @@ void run(int n, double ratio, bool direct) {
   };
   const la::KrylovOptions options{.tolerance = 1e-8, .max_iterations = 5000};
   measure("Cg<Multigrid>, blocks", la::Cg<la::Multigrid<3, 6>>(options, multigrid()), K, A, b);
+  measure("Cg<CellPatches<Multigrid>>",
+          la::Cg<la::CellPatches<8, la::Multigrid<3, 6>>>(
+              options, la::CellPatches<8, la::Multigrid<3, 6>>(mesh.cells, multigrid())),
+          K, A, b);
   measure("Cg<Multigrid>, numbers", la::Cg<la::Multigrid<3, 6>>(options, multigrid()), A, A, b);
   measure("Cg<IncompleteCholesky>", la::Cg<>(options), A, A, b);
 #if __has_include(<amgcl/amg.hpp>)

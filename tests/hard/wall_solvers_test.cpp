@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Walls through linear solvers that read their tangent in blocks: as directly, on threads, in time, buckled.
 #include "tunica/core/units.hpp"
+#include "tunica/la/cell_patches.hpp"
 #include "tunica/la/direct.hpp"
 #include "tunica/la/iterative.hpp"
 #include "tunica/la/multigrid.hpp"
@@ -205,5 +206,37 @@ TEST_SUITE("hard") {
       CHECK(wall.displacement().row(0).cwiseAbs().maxCoeff() > 1e-3);
     else
       CHECK(report.load < 1);
+  }
+
+  TEST_CASE("la: sweeps over hexahedra keep volumes where coarse levels do not") {
+    const auto mesh = meshing::box_hexes({.cells = {8, 8, 8}, .lo = Vec3::Zero(), .hi = {8e-3, 8e-3, 8e-3}});
+    la::Multigrid<3, 6> rigid;
+    rigid.near_null_space(la::rigid_body_modes(mesh.nodes));
+    for (const double ratio : {1e2, 1e3, 1e4}) {
+      solid::Body<mesh::Hex8, Law> body(mesh, law_of(ratio), 0, solid::Mass::lumped);
+      for (const Index n : mesh::patch_nodes(mesh.patch("z0")))
+        for (const auto axis : {solid::Axis::x, solid::Axis::y, solid::Axis::z}) body.fix(n, axis);
+      Eigen::VectorXd u = Eigen::VectorXd::Zero(body.unknowns()), f, predicted, b = u, x, y;
+      REQUIRE(body.internal_forces(u, la::no_step, f, predicted));
+      const auto& K = body.tangent_blocks(u, Eigen::VectorXd(), {});
+      for (const Index n : mesh::patch_nodes(mesh.patch("x0"))) b[3 * n] = 1e-3;
+      body.clear_fixed(b);
+      using Patches = la::CellPatches<8, la::Multigrid<3, 6>>;
+      la::Cg<Patches> with({.tolerance = 1e-8, .max_iterations = 4000}, Patches(mesh.cells, rigid));
+      la::Cg<la::Multigrid<3, 6>> without({.tolerance = 1e-8, .max_iterations = 4000}, rigid);
+      with.analyse(K), without.analyse(K);
+      REQUIRE(with.factorise(K));
+      REQUIRE(without.factorise(K));
+      const auto patched = with.solve(b, x), plain = without.solve(b, y);
+      CHECK(patched.status == Status::converged);
+      CHECK(plain.status == Status::converged);
+      Eigen::VectorXd product;
+      K.apply(x, product);
+      CHECK((b - product).norm() <= 1e-8 * b.norm());
+      CHECK(2 * patched.iterations < plain.iterations);
+      if (ratio >= 1e4) CHECK(4 * patched.iterations < plain.iterations);
+      MESSAGE("kappa/mu " << ratio << ": " << patched.iterations << " iterations, " << plain.iterations
+                          << " without sweeps over cells");
+    }
   }
 }

@@ -42,6 +42,7 @@ SolveReport cg(const Operator& A, const Precond& M, const Eigen::VectorXd& b, Ei
   A.apply(x, q);
   r = b - q;
   double residual = norm(r);
+  double gained = 0, marked = 0;  // energy: it falls all the time where a residual may well rise for long
   int claims = 0;
   for (int k = 0;;) {
     if (watch.done(residual, k, report)) return report;
@@ -59,6 +60,8 @@ SolveReport cg(const Operator& A, const Precond& M, const Eigen::VectorXd& b, Ei
       }
       const double alpha = rz / pq;
       ++k;
+      gained += alpha * rz;
+      if (gained > 1.01 * marked) marked = gained, watch.advances(k);
       residual = std::sqrt(detail::advance(alpha, p, q, x, r));
       if (residual <= watch.goal() || !std::isfinite(residual)) break;
       if (watch.done(residual, k, report)) return report;

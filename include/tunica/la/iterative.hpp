@@ -4,12 +4,14 @@
 
 #include "tunica/la/bicgstab.hpp"
 #include "tunica/la/block_convert.hpp"
+#include "tunica/la/block_rows.hpp"
 #include "tunica/la/cg.hpp"
 #include "tunica/la/gmres.hpp"
 #include "tunica/la/linear_solver.hpp"
 #include "tunica/la/minres.hpp"
 #include "tunica/la/preconditioner.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <utility>
@@ -68,7 +70,9 @@ class Iterative {
     else
       A_ = A;
     if (!std::isfinite(A.coeffs().sum())) return {Status::diverged, 0, 0};
-    if constexpr (Refreshable<Precond>) {
+    if constexpr (ReadsBlocks<Precond> && !Refreshable<Precond>) {
+      return factorise(blocks_of(A_));  // it reads nothing else
+    } else if constexpr (Refreshable<Precond>) {
       const auto report = fresh_ ? preconditioner_.compute(A_) : preconditioner_.refresh(A_);
       fresh_ = !report;
       return report;
@@ -108,6 +112,16 @@ class Iterative {
   [[nodiscard]] const Precond& preconditioner() const { return preconditioner_; }
 
  private:
+  [[nodiscard]] static BlockMatrix<block_rows> blocks_of(const RowMatrix& A) {
+    Blocked<block_rows> blocked;
+    blocked.set_up(A);
+    const auto rows = blocked.view();
+    BlockMatrix<block_rows> B({rows.start, rows.start + rows.rows + 1},
+                              {rows.column, rows.column + rows.start[rows.rows]});
+    std::copy_n(rows.value, BlockMatrix<block_rows>::block_size * B.column().size(), B.values());
+    return B;
+  }
+
   template <class Operator>
   SolveReport solve(const Operator& A, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     if constexpr (Method == Krylov::cg) return cg(A, preconditioner_, b, x, options_);

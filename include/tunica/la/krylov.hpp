@@ -46,6 +46,8 @@ class Watch {
       : goal_(std::max(options.tolerance * scale, options.absolute)), scale_(scale), options_(options) {}
 
   [[nodiscard]] double goal() const { return goal_; }
+  /// A method that minimises something else than the residual got on with that.
+  void advances(int iteration) { since_ = iteration; }
   /// True when the iteration must end; report then holds how.
   [[nodiscard]] bool done(double residual, int iteration, SolveReport& report) {
     report.iterations = iteration;
