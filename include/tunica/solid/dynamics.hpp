@@ -97,7 +97,7 @@ class Dynamics {
   /// Starts at displacement and velocity (3 x nodes, [m], [m/s]) with the present loads; the
   /// acceleration follows from the equation of motion. Then save()s. `diverged` if a cell has J <= 0.
   SolveReport start(const Points<3>& u, const Points<3>& v) {
-    set_displacements(body_, u, state_.u);
+    state_.u.head(u.size()) = u.reshaped();
     state_.v.head(v.size()) = v.reshaped();
     state_.f = load_;
     state_.p = pressure_;

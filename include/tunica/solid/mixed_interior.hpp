@@ -7,7 +7,6 @@
 #include "tunica/core/vec.hpp"
 #include "tunica/fem/block_assembly.hpp"
 #include "tunica/la/block_matrix.hpp"
-#include "tunica/la/direct.hpp"
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/solid/cell_laws.hpp"
 #include "tunica/solid/law_packs.hpp"
@@ -16,9 +15,7 @@
 #include "tunica/solid/volumetric.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -116,50 +113,6 @@ class MixedInterior {
     return sum;
   }
 
-  /// Gives x the pressures that belong to its displacements, dPi/dq = 0: for a start where nothing is solved.
-  /// Without compression (kappa infinite) there are none, and x is left as it is.
-  void settle(Eigen::VectorXd& x) const {
-    for (const Material& law : laws_.materials())
-      if (!(law.volumetric.complement(0.0).compliance > 0)) return;
-    constexpr int steps = 30;  // of Newton; one does for a square U*
-    using Entry = Eigen::Triplet<double>;
-    std::vector<std::array<double, 4 + MixedTet::Places::count>> of_cell(J_.size());
-    Eigen::VectorXd settled = x, r(nodes()), dq;
-    la::SparseMatrix C(nodes(), nodes());
-    la::Ldlt solver;
-    for (int step = 0; step < steps; ++step) {
-      for_each_pack(settled, [&](const Cells& pack, const Material& law, const At& at) {
-        MixedTet::Tangent<S> out;
-        MixedTet::tangent(law, at.moduli, at.X, at.u, at.q, at.data, at.stored(), out);
-        for (int l = 0; l < pack.count; ++l) {
-          auto& cell = of_cell[index(pack.cell[l])];
-          for (std::size_t a = 0; a < 4; ++a) cell[a] = out.f[a][3][l];
-          for (std::size_t p = 4; p < cell.size(); ++p) cell[p] = -out.K[p - 4][15][l];
-        }
-      });
-      r.setZero();
-      std::vector<Entry> entries;
-      for (Index e = 0; e < assembly_.cells().cols(); ++e) {
-        const auto& cell = of_cell[index(e)];
-        const auto node = assembly_.cells().col(e);
-        for (int a = 0; a < 4; ++a) {
-          r[node[a]] += cell[index(a)];
-          for (int b = a; b < 4; ++b) {
-            const double c = cell[4 + index(MixedTet::Places::place(a, b))];
-            entries.emplace_back(node[a], node[b], c);
-            if (a != b) entries.emplace_back(node[b], node[a], c);
-          }
-        }
-      }
-      C.setFromTriplets(entries.begin(), entries.end());
-      if (step == 0) solver.analyse(C);
-      if (!solver.factorise(C) || !solver.solve(r, dq) || !dq.allFinite()) return;
-      settled.tail(nodes()) += dq;
-      if (dq.norm() <= 1e-13 * settled.tail(nodes()).norm()) break;
-    }
-    x = settled;
-  }
-
   /// The Cauchy stress of a cell [Pa] and its current volume [m3]: that of the law, which has no trace, and
   /// the mean of the pressures of its nodes.
   [[nodiscard]] Single::Stress stress(Index cell, const Eigen::VectorXd& x) const {
@@ -244,12 +197,5 @@ class MixedInterior {
   double pressure_scale_ = 1;  // [Pa/m]
   Index inverted_cell_ = -1;
 };
-
-/// x takes the displacements u, 3 x nodes [m], with the pressures of nodes that belong to them.
-template <class Body>
-void set_displacements(const Body& body, const Points<3>& u, Eigen::VectorXd& x) {
-  x.head(u.size()) = u.reshaped();
-  if constexpr (requires { body.inside().settle(x); }) body.inside().settle(x);
-}
 
 }  // namespace tunica::solid
