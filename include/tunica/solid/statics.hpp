@@ -179,6 +179,8 @@ class Statics {
   [[nodiscard]] const Eigen::VectorXd& unknowns() const { return u_; }
   [[nodiscard]] const StaticsOptions& options() const { return options_; }
   [[nodiscard]] const Solver& solver() const { return newton_.solver(); }
+  /// Of unknown k at the end of the path [m]; 0 where none is prescribed.
+  [[nodiscard]] double prescribed(Index k) const { return prescribed_end_[k]; }
 
   // What follows is for other ways along the path of loads: ArcLength, VolumeControl.
 
