@@ -7,9 +7,8 @@
 #include "tunica/solid/material.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 
+#include <cmath>
 #include <cstddef>
 
 namespace tunica::solid {
@@ -39,26 +38,42 @@ template <class S>
 
 }  // namespace detail
 
-/// Directions a on a body under F_p as unit directions free of stress, F_p^-1 a / |F_p^-1 a|. Of the axes of
-/// a frame (Frame) the first goes back so, the second as the part of F_p^-1 a across it: they stay
-/// orthogonal.
+/// Directions a on a body under F (J > 0) as unit directions free of stress, F^-1 a / |F^-1 a|; zero: a
+/// family that is not there. Of the axes of a frame (Frame) the first goes back so, the second as the part of
+/// F^-1 a across it: they stay orthogonal.
+template <bool Frame = false, class S, class FibreData>
+void pull_back(const Tensor<S>& F, FibreData& fibres) {
+  static_assert(!Frame || fibre_families<FibreData> == 3, "a frame has three axes");
+  using std::sqrt;
+  const Tensor<S> cof = cofactor(F);  // J F^-T
+  Vector3<S> back[2] = {{S(0), S(0), S(0)}, {S(0), S(0), S(0)}};
+  for (std::size_t family = 0; family < fibre_families<FibreData>; ++family) {
+    const Vector3<S> given = fibres[family];
+    Vector3<S> a;
+    for (std::size_t j = 0; j < 3; ++j)
+      a[j] = cof.m[j] * given[0] + cof.m[3 + j] * given[1] + cof.m[6 + j] * given[2];
+    if (Frame && family == 1) {
+      const S along = dot(a, back[0]);
+      for (std::size_t j = 0; j < 3; ++j) a[j] -= along * back[0][j];
+    }
+    if (Frame && family == 2) {  // on the side where it was
+      const Vector3<S>&f = back[0], &s = back[1];
+      const Vector3<S> normal{f[1] * s[2] - f[2] * s[1], f[2] * s[0] - f[0] * s[2],
+                              f[0] * s[1] - f[1] * s[0]};
+      const S side = dot(a, normal) < S(0) ? S(-1) : S(1);
+      for (std::size_t j = 0; j < 3; ++j) a[j] = side * normal[j];
+    }
+    const S square = dot(a, a);
+    if (!(square > S(0))) continue;
+    const S scale = S(1) / sqrt(square);
+    for (std::size_t j = 0; j < 3; ++j) a[j] = scale * a[j];
+    if (family < 2) back[family] = a;
+    fibres.set(family, a);
+  }
+}
 template <bool Frame = false, class FibreData>
 void pull_back(const Eigen::Matrix3d& F_p, FibreData& fibres) {
-  static_assert(!Frame || fibre_families<FibreData> == 3, "a frame has three axes");
-  const Eigen::Matrix3d inverse = F_p.inverse();
-  Eigen::Vector3d back[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  for (std::size_t family = 0; family < fibre_families<FibreData>; ++family) {
-    const auto given = fibres[family];
-    Eigen::Vector3d a = inverse * Eigen::Vector3d(given[0], given[1], given[2]);
-    if (Frame && family == 1) a -= a.dot(back[0]) * back[0];
-    if (Frame && family == 2)  // on the side where it was
-      a = (a.dot(back[0].cross(back[1])) < 0 ? -1 : 1) * back[0].cross(back[1]);
-    const double length = a.norm();
-    if (!(length > 0)) continue;
-    a /= length;
-    if (family < 2) back[family] = a;
-    fibres.set(family, {a[0], a[1], a[2]});
-  }
+  pull_back<Frame>(detail::tensor_of(F_p), fibres);
 }
 
 }  // namespace tunica::solid

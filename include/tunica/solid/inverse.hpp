@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -55,39 +56,40 @@ struct CarriedBack {
 
   template <class S>
   [[nodiscard]] Tensor<S> stress(const Tensor<S>& F, const Point<S>& given) const {
-    using std::sqrt;
-    const Tensor<S> cof = cofactor(F);  // J F^-T
     Point<S> free = given;
-    for (std::size_t family = 0; 3 * family < given.m.size(); ++family) {
-      const Vector3<S> a = given[family];
-      Vector3<S> b;
-      for (std::size_t j = 0; j < 3; ++j) b[j] = cof.m[j] * a[0] + cof.m[3 + j] * a[1] + cof.m[6 + j] * a[2];
-      const S square = dot(b, b);
-      if (!(square > S(0))) continue;  // a family that is not there
-      const S scale = S(1) / sqrt(square);
-      free.set(family, {b[0] * scale, b[1] * scale, b[2] * scale});
-    }
+    pull_back<reads_frame<Law>>(F, free);
     return solid::stress(law, F, free);
   }
 };
 
-/// The material of a cell for the inverse problem, and its data.
+template <class Law>
+inline constexpr bool reads_fibres = fibre_families<PointOf<Law, double>> != 0;
+
+/// The material of a cell for the inverse problem, as stiff as after infinite time, and its data.
 template <class Material>
-[[nodiscard]] auto carried_back(const Material& material) {
-  if constexpr (requires { typename decltype(material.isochoric)::template Point<double>; }) {
-    using Law = std::remove_cvref_t<decltype(material.isochoric)>;
-    if constexpr (needs_point<Law>)
+[[nodiscard]] auto carried_back(Material material) {
+  using Law = PointLaw<Material>;
+  constexpr double for_ever = std::numeric_limits<double>::infinity();
+  if constexpr (Pair<Material>) {
+    begin_step(material.isochoric, for_ever);
+    if constexpr (reads_fibres<Law>)
       return Hyperelastic{CarriedBack<Law>{material.isochoric}, material.volumetric};
     else
       return material;
   } else {
-    static_assert(!needs_point<Material>, "fibres in the inverse problem need a pair of laws: Hyperelastic");
-    return material;
+    begin_step(material, for_ever);
+    if constexpr (reads_fibres<Law>)
+      return CarriedBack<Law>{material};
+    else
+      return material;
   }
 }
 template <class Law>
-[[nodiscard]] CellData<CarriedBack<Law>> carried_back(const CellData<Law>& data) {
-  return {.points = data.points};
+[[nodiscard]] auto carried_back(const CellData<Law>& data) {
+  if constexpr (reads_fibres<Law>)
+    return CellData<CarriedBack<Law>>{.points = data.points};
+  else
+    return data;
 }
 
 /// r(w) = f_int(X = x - w, u = w) - load f_ext with x and f_ext known; w is the displacement that the
@@ -161,12 +163,7 @@ class InverseProblem {
   template <class S>
   [[nodiscard]] auto forces(Index e, const Nodal<S>& X, const Nodal<S>& u) const {
     const auto& body = wall_.body();
-    const auto material = carried_back(body.material(e));
-    if constexpr (std::is_same_v<std::remove_const_t<decltype(material)>,
-                                 std::remove_cvref_t<decltype(body.material(e))>>)
-      return Element::forces(material, X, u);
-    else
-      return Element::forces(material, X, u, carried_back(body.data(e)));
+    return Element::forces(carried_back(body.material(e)), X, u, carried_back(body.data(e)));
   }
 
   const Wall& wall_;
@@ -180,16 +177,20 @@ class InverseProblem {
 
 /// `wall` is composed on the mesh of the known shape, with the loads that act there as end values: its
 /// follower pressures, dead forces and fixed unknowns count, prescribed displacements do not. Supports are
-/// relaxed in the known shape, and fibres are given on it. `diverged` with the shape of the load reached if
-/// the steps become too small: a shape free of stress need not exist.
+/// relaxed in the known shape, and fibres are given on it. Laws with a history have carried the loads for
+/// ever: they are as stiff as after infinite time. `diverged` with the shape of the load reached if the steps
+/// become too small: a shape free of stress need not exist.
 ///   auto image = ...;  Statics loaded{image, law};  loaded.fix(...);  loaded.pressure(...);
 ///   const auto free = unloaded_shape(loaded);  image.nodes = free.nodes;  Statics wall{image, law};
+///   carry_fibres_back(loaded, wall);  // if the law reads fibres
 /// The tangent is not symmetric.
 template <la::LinearSolver Solver = la::Lu, class Wall>
 [[nodiscard]] InverseReport unloaded_shape(const Wall& wall, const InverseOptions& options = {},
                                            Solver solver = {}) {
   static_assert(!Solver::symmetric,
                 "the tangent of the inverse problem is not symmetric: give Lu or the like");
+  static_assert(std::remove_cvref_t<decltype(wall.body())>::per_node == 3,
+                "inverse design finds nodes alone: give a formulation without pressures at them");
   TUNICA_EXPECT(wall.body().laws().prestress().empty(), "the unloaded shape of a body without prestress");
   InverseReport report;
   detail::InverseProblem<Wall> problem(wall);
@@ -219,6 +220,32 @@ template <la::LinearSolver Solver = la::Lu, class Wall>
   }
   report.nodes = wall.body().mesh().nodes - w.reshaped(3, wall.body().mesh().node_count());
   return report;
+}
+
+/// Gives the points of `wall`, composed on the unloaded shape of `loaded`, what those of `loaded` were given,
+/// with its fibres carried back by the deformation between the two shapes at the same point: F^-1 a of unit
+/// length, as unloaded_shape read them; frames stay orthogonal. `wall` then comes back to the known shape.
+/// Laws of regions are not handed on.
+template <class Loaded, class Wall>
+void carry_fibres_back(const Loaded& loaded, Wall& wall) {
+  using Body = std::remove_cvref_t<decltype(loaded.body())>;
+  static_assert(std::is_same_v<Body, std::remove_cvref_t<decltype(wall.body())>>,
+                "fibres go from a body to one of the same cells and the same kind of law");
+  static_assert(detail::reads_fibres<typename Body::Laws::Law>, "this law reads no fibres");
+  using Element = typename Body::Element;
+  const Body &image = loaded.body(), &free = wall.body();
+  TUNICA_EXPECT(image.mesh().cells == free.mesh().cells, "the two shapes are of the same cells");
+  TUNICA_EXPECT(free.laws().prestress().empty(), "the unloaded shape has no prestress");
+  std::vector<Eigen::Matrix3d> deformation;
+  for (Index e = 0; e < image.mesh().cell_count(); ++e) {
+    const auto X = free.reference(e);
+    for (const auto& F : Element::deformation(X, image.reference(e) - X)) deformation.push_back(F);
+  }
+  auto laws = image.laws();
+  laws.prestress(std::move(deformation));  // carries back what was given
+  for (Index e = 0; e < image.mesh().cell_count(); ++e)
+    if (const auto* points = laws.data(e).points)
+      for (std::size_t q = 0; q < Element::points; ++q) wall.laws().point_data(e, q, points[q]);
 }
 
 }  // namespace tunica::solid
