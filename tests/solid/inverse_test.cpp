@@ -145,6 +145,12 @@ TEST_SUITE("unit") {
     MESSAGE("off that of the elastic law by " << fibres << " of the outer radius, without fibres " << none);
     CHECK(fibres < 1e-10);
     CHECK(none < 1e-10);
+    // A branch that forgets nothing is part of that stiffness.
+    constexpr double never = std::numeric_limits<double>::infinity();
+    const Hyperelastic lasting{Viscoelastic{rubber.isochoric, std::array{Prony{.ratio = 0.5, .time = never}}},
+                               rubber.volumetric};
+    const Hyperelastic stiffer{NeoHooke{.c10 = 45e3}, rubber.volumetric};
+    CHECK(same(clamped_tube(mesh, stiffer, 4e3), clamped_tube(mesh, lasting, 4e3)) < 1e-10);
     // What it remembers of a load that acts already does not count.
     REQUIRE(hold(slowly, 0.01));
     CHECK(same(fibrous, slowly) < 1e-10);

@@ -71,7 +71,7 @@ class Viscoelastic {
     TUNICA_EXPECT(dt >= 0, "time does not run backwards");
     gain_ = 1;
     for (std::size_t i = 0; i < Terms; ++i) {
-      const double x = dt / terms_[i].time;
+      const double x = std::isinf(terms_[i].time) ? 0 : dt / terms_[i].time;  // also after for ever
       decay_[i] = std::exp(-x);
       share_[i] = terms_[i].ratio * (x > 0 ? -std::expm1(-x) / x : 1);
       gain_ += share_[i];
