@@ -141,6 +141,12 @@ TEST_SUITE("unit") {
     CHECK(run(2, false) == v);
     CHECK(run(1, true) == v);
     CHECK(run(2, true) == v);
+    Store store;
+    held(mesh).archive(store);
+    store.reading = true;
+    auto other =
+        held(meshing::tube({.inner_radius = 5e-3, .thickness = 1e-3, .length = 5e-3, .cells = {1, 8, 1}}));
+    CHECK_THROWS_WITH_AS(other.archive(store), doctest::Contains("checkpoint: displacement: "), InputError);
   }
 
   TEST_CASE("solid: modified and full Newton agree and the tangent is kept between sub-iterations") {

@@ -7,6 +7,7 @@
 #include "tunica/meshing/tube.hpp"
 #include "tunica/solid/arc_length.hpp"
 #include "tunica/solid/dynamics.hpp"
+#include "tunica/solid/fibre_laws.hpp"
 #include "tunica/solid/inverse.hpp"
 #include "tunica/solid/laws.hpp"
 #include "tunica/solid/pressure_load.hpp"
@@ -341,5 +342,59 @@ TEST_SUITE("unit") {
     auto mesh = meshing::box_hexes(2);
     mesh.cells.col(3).head<4>().swap(mesh.cells.col(3).tail<4>());
     CHECK_THROWS_WITH_AS((Statics{mesh, wall_law}), "solid: cell 3 is inverted as it is given", MeshError);
+  }
+
+  TEST_CASE("solid: a node of no cell stays where it is and one that is not a number is refused by name") {
+    auto mesh = meshing::box_hexes(2);
+    mesh.nodes.conservativeResize(3, mesh.node_count() + 1);
+    mesh.nodes.rightCols<1>() = Vec3(2, 0, 0);
+    const auto pulled = [](const mesh::HexMesh& m) {
+      Statics wall{m, wall_law};
+      wall.fix(m.patch("x0"));
+      for (const Index n : mesh::patch_nodes(m.patch("x1"))) wall.force(n, Vec3(1e3, 0, 0));
+      REQUIRE(wall.solve());
+      return wall.displacement();
+    };
+    const Points<3> with_loose = pulled(mesh), without = pulled(meshing::box_hexes(2));
+    CHECK(with_loose.rightCols<1>().isZero(0));
+    CHECK((with_loose.leftCols(without.cols()) - without).norm() < 1e-12 * without.norm());
+    auto broken = meshing::box_hexes(2);
+    broken.nodes(1, broken.cells(0, 5)) = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH_AS((Statics{broken, wall_law}), "solid: cell 0 has a node that is not a number",
+                         MeshError);
+  }
+
+  TEST_CASE("solid: statics refuse a NaN displacement and tell of an equilibrium that a body would leave") {
+    const auto mesh = meshing::box_hexes(meshing::Block{.cells = {1, 1, 20}, .hi = Vec3(1, 1, 20)});
+    Statics wrong{mesh, wall_law};
+    wrong.fix(mesh.patch("z0"));
+    wrong.prescribe(mesh::patch_nodes(mesh.patch("z1")).front(), Axis::x,
+                    std::numeric_limits<double>::quiet_NaN());
+    CHECK(wrong.solve().solve.status == Status::diverged);
+    CHECK(wrong.displacement().isZero(0));
+    CHECK_THROWS_AS(wrong.force(mesh.node_count(), Vec3::Zero()), ContractError);
+    // A straight column of slenderness 20, clamped and guided: it buckles at a strain of (2 pi/20)^2/12,
+    // about 0.8 %, in both directions across alike.
+    for (const auto& [pressed, unstable] : {std::pair{0.002, 0}, {0.02, 2}}) {
+      Statics straight{mesh, Hyperelastic{NeoHooke{.c10 = 1e5}, Quadratic{.kappa = 1e5}}};
+      straight.fix(mesh.patch("z0"));
+      straight.fix(mesh.patch("z1"));
+      for (const Index n : mesh::patch_nodes(mesh.patch("z1"))) straight.prescribe(n, Axis::z, -20 * pressed);
+      const auto report = straight.solve();
+      REQUIRE(report);
+      CHECK(report.unstable == unstable);
+    }
+  }
+
+  TEST_CASE("solid: a body whose law reads fibres is refused until it was given some") {
+    const auto mesh = meshing::box_hexes(2);
+    Statics wall{mesh,
+                 Hyperelastic{HolzapfelGasserOgden{.c = 1e3, .k1 = 1e4, .k2 = 1}, Quadratic{.kappa = 1e5}}};
+    wall.fix(mesh.patch("x0"));
+    CHECK_THROWS_WITH_AS(wall.solve(),
+                         "solid: the law reads fibres, and the body was given none: see point_field",
+                         InputError);
+    wall.point_field([](Index, const Vec3&) { return Fibres<double, 2>{}; });  // none, and said so
+    CHECK(wall.solve());
   }
 }

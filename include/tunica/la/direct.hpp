@@ -56,6 +56,11 @@ class Direct {
     return {residual < worthless_above ? Status::converged : Status::stalled, iterations, residual};
   }
 
+  /// Of D in the last factors: how many independent directions there are in which A is negative (Sylvester).
+  [[nodiscard]] Eigen::Index negative_pivots() const requires Symmetric {
+    return (factor_->vectorD().array() < 0).count();
+  }
+
  private:
   [[nodiscard]] Eigen::VectorXd product(const Eigen::VectorXd& x) const {
     if constexpr (Symmetric)

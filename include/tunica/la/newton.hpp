@@ -2,6 +2,7 @@
 // Newton's method with a line search, which may keep its factorised tangent while it contracts well.
 #pragma once
 
+#include "tunica/core/types.hpp"
 #include "tunica/la/linear_solver.hpp"
 #include "tunica/la/step_search.hpp"
 
@@ -57,7 +58,8 @@ struct [[nodiscard]] NewtonReport {
   std::vector<double> history;  // |r| / scale at the start and after each iteration
   double rounding = 0;          // what of |r| / scale is rounding, at the end
   int factorisations = 0;
-  bool inadmissible = false;  // it ended because no step led back to where the problem is defined
+  Index negative_pivots = -1;  // of the last tangent; -1 where the solver does not count them
+  bool inadmissible = false;   // it ended because no step led back to where the problem is defined
 
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
 };
@@ -123,6 +125,8 @@ class Newton {
       if (made_now) {
         if (!factorise(problem, x)) return ended(Status::diverged, relative);
         ++report.factorisations;
+        if constexpr (requires { solver_.negative_pivots(); })
+          report.negative_pivots = static_cast<Index>(solver_.negative_pivots());
       }
       dx_.setZero(x.size());  // the last step is no start for the next
       if (solver_.solve(-r_, dx_).status == Status::diverged) return ended(Status::diverged, relative);

@@ -7,9 +7,7 @@
 #include "tunica/mesh/mesh.hpp"
 #include "tunica/mesh/patch_nodes.hpp"
 #include "tunica/solid/body_mass.hpp"
-#include "tunica/solid/formulation.hpp"
-#include "tunica/solid/interior.hpp"
-#include "tunica/solid/mixed_interior.hpp"
+#include "tunica/solid/interior_of.hpp"
 #include "tunica/solid/pressure_load.hpp"
 #include "tunica/solid/robin.hpp"
 #include "tunica/solid/tangent_matrix.hpp"
@@ -25,32 +23,6 @@ namespace tunica::solid {
 
 /// A component of the displacement.
 enum class Axis { x, y, z };
-
-namespace detail {
-/// True, or it does not compile, in one sentence.
-template <class Law>
-inline constexpr bool law_is_complete = [] {
-  if constexpr (requires(const Law& law) { law.isochoric, law.volumetric; }) {
-    static_assert(IsochoricEnergy<PointLaw<Law>> || Material<PointLaw<Law>>,
-                  "the isochoric law needs `reads` and energy(invariants)");
-    static_assert(VolumetricEnergy<decltype(Law::volumetric)>,
-                  "the volumetric law needs energy(J), slope(J) and curvature(J)");
-  } else {
-    static_assert(Material<Law>, "a material gives energy(F), stress(F) or response(F) [Pa] of any scalar");
-  }
-  return true;
-}();
-
-template <mesh::Cell C, class Law, class Locking>
-struct InteriorOf {
-  using type = Interior<C, Law, Locking>;
-};
-template <mesh::Cell C, class Law>
-struct InteriorOf<C, Law, NodalPressure> {
-  static_assert(C::vtk_type == mesh::Tet4::vtk_type, "nodal pressures are those of linear tetrahedra");
-  using type = MixedInterior<Law>;
-};
-}  // namespace detail
 
 /// Unknown i of node a is number 3 a + i in every vector; vectors have unknowns() entries: 3 * nodes, and
 /// with NodalPressure one more for each node at the end. `Given` is a material, or one with a formulation:
@@ -103,8 +75,22 @@ class Body {
   [[nodiscard]] la::SparseMatrix pattern() const { return tangent_.pattern(); }
 
   void fix(Index node, Axis axis) {
+    fixed_[static_cast<std::size_t>(3 * known(node) + static_cast<int>(axis))] = 1;
+  }
+  /// Nodes of no cell stay where they are: nothing holds them, and nothing loads them.
+  void fix_loose_nodes() {
+    std::vector<char> loose(static_cast<std::size_t>(mesh_.node_count()), 1);
+    for (const Index n : mesh_.cells.reshaped()) loose[static_cast<std::size_t>(n)] = 0;
+    for (Index n = 0; n < mesh_.node_count(); ++n) {
+      if (!loose[static_cast<std::size_t>(n)]) continue;
+      for (const Axis axis : {Axis::x, Axis::y, Axis::z}) fix(n, axis);
+      if constexpr (per_node == 4) fixed_[static_cast<std::size_t>(3 * mesh_.node_count() + n)] = 1;
+    }
+  }
+  /// The node, which the mesh must have.
+  [[nodiscard]] Index known(Index node) const {
     TUNICA_EXPECT(node >= 0 && node < mesh_.node_count(), "a node of the mesh");
-    fixed_[static_cast<std::size_t>(3 * node + static_cast<int>(axis))] = 1;
+    return node;
   }
   [[nodiscard]] bool fixed(Index unknown) const { return fixed_[static_cast<std::size_t>(unknown)] != 0; }
   /// v = 0 at the prescribed unknowns.

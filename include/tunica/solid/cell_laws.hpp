@@ -2,6 +2,7 @@
 // The laws of the regions of a body, what they read at the points of its cells, and a stored deformation.
 #pragma once
 
+#include "tunica/core/error.hpp"
 #include "tunica/core/expect.hpp"
 #include "tunica/core/types.hpp"
 #include "tunica/solid/cell_data.hpp"
@@ -59,10 +60,22 @@ class CellLaws {
     }
     const std::size_t at = static_cast<std::size_t>(cell) * Points + point;
     given_[at] = given;
+    told_ = true;
     carry_back(at);
   }
   void point_data(Index cell, const PointData& given) {
     for (std::size_t q = 0; q < Points; ++q) point_data(cell, q, given);
+  }
+
+  /// InputError if the law reads fibres and nobody gave any; those of a family that is not there are zeros.
+  void require_fibres() const {
+    if constexpr (fibre_families < PointData >> 0) {
+      if (told_) return;
+      for (const PointData& point : points_)  // remembered ones count
+        for (std::size_t k = 0; k < 3 * fibre_families<PointData>; ++k)
+          if (point.m[k] != 0) return;
+      throw InputError("solid: the law reads fibres, and the body was given none: see point_field");
+    }
   }
 
   /// F_p of a prestress: Points a cell, one cell after the other; empty without one. What laws remember
@@ -127,6 +140,7 @@ class CellLaws {
   std::vector<Material> materials_;        // by region; the first is also that of all others
   std::vector<PointData> given_, points_;  // on the mesh, free of stress; Points a cell. Empty: none
   std::vector<Eigen::Matrix3d> prestress_;
+  bool told_ = false;  // point_data was called
 };
 
 }  // namespace tunica::solid

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -17,7 +18,7 @@ namespace tunica::solid {
 enum class Mass { consistent, lumped };  // lumped: row sums
 
 /// m_ab = int rho N_a N_b dV [kg] on the nodes X [m]. MeshError, by the number of the cell, if it is
-/// inverted.
+/// inverted or a node is not a number.
 template <mesh::Cell C>
 [[nodiscard]] Eigen::Matrix<double, C::nodes, C::nodes> cell_mass(Index cell,
                                                                   const Eigen::Matrix<double, 3, C::nodes>& X,
@@ -28,7 +29,9 @@ template <mesh::Cell C>
   m.setZero();
   for (std::size_t q = 0; q < Rule::size; ++q) {
     const double det = fem::map_point<double, 3>(X, Tables::gradients[q]).det;
-    if (!(det > 0)) throw MeshError("solid: cell " + std::to_string(cell) + " is inverted as it is given");
+    if (!(det > 0))
+      throw MeshError("solid: cell " + std::to_string(cell) +
+                      (std::isnan(det) ? " has a node that is not a number" : " is inverted as it is given"));
     const Eigen::Map<const Eigen::Matrix<double, C::nodes, 1>> N(Tables::values[q].data());
     m += density * det * Rule::weights[q] * N * N.transpose();
   }

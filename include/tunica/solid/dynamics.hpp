@@ -6,6 +6,7 @@
 #include "tunica/la/direct.hpp"
 #include "tunica/la/newton.hpp"
 #include "tunica/la/time_scheme.hpp"
+#include "tunica/solid/archive_whole.hpp"
 #include "tunica/solid/dynamics_options.hpp"
 #include "tunica/solid/energy_balance.hpp"
 #include "tunica/solid/history.hpp"
@@ -48,6 +49,7 @@ class Dynamics {
     TUNICA_EXPECT(density > 0, "dynamics needs a mass");
     for (auto* v : {&state_.u, &state_.v, &state_.a, &state_.f, &load_})
       *v = Eigen::VectorXd::Zero(body_.unknowns());
+    body_.fix_loose_nodes();
     save();
   }
 
@@ -81,7 +83,7 @@ class Dynamics {
       load_.segment<3>(3 * interface_nodes_[k]) = force.col(static_cast<Eigen::Index>(k));
   }
   /// Dead force on any node at t^{n+1} [N].
-  void force(Index node, const Vec3& f) { load_.segment<3>(3 * node) = f; }
+  void force(Index node, const Vec3& f) { load_.segment<3>(3 * body_.known(node)) = f; }
   /// Adds a follower pressure [Pa] on a patch; returns its number, with which it is changed.
   std::size_t pressure(const Patch& patch, double p) {
     const std::size_t number = body_.add_pressure(patch);
@@ -180,7 +182,6 @@ class Dynamics {
 
   [[nodiscard]] double strain_energy() const { return body_.strain_energy(state_.u); }    // [J]
   [[nodiscard]] double kinetic_energy() const { return body_.kinetic_energy(state_.v); }  // [J]
-
   /// Of the last step that held.
   [[nodiscard]] EnergyBalance energy_balance() const {
     return before_.u.size() == 0 ? EnergyBalance{}
@@ -192,20 +193,20 @@ class Dynamics {
   [[nodiscard]] Index inverted_cell() const { return inverted_cell_; }
   [[nodiscard]] const Body<C, Material>& body() const { return body_; }
 
-  /// Hands its state to a checkpoint, or takes it from there: a(name, vector) for each part. The
-  /// state is then also the saved one.
+  /// Hands its state to a checkpoint, or takes it from there: a(name, vector) for each part. The state is
+  /// then also the saved one. InputError if it is that of another body.
   template <class A>
   void archive(A& a) {
-    a("displacement", state_.u);
-    a("velocity", state_.v);
-    a("acceleration", state_.a);
-    a("force", state_.f);
-    a("pressure", state_.p);
-    a("load", load_);
-    a("load_pressure", pressure_);
+    archive_whole(a, "displacement", state_.u);
+    archive_whole(a, "velocity", state_.v);
+    archive_whole(a, "acceleration", state_.a);
+    archive_whole(a, "force", state_.f);
+    archive_whole(a, "pressure", state_.p);
+    archive_whole(a, "load", load_);
+    archive_whole(a, "load_pressure", pressure_);
     if constexpr (has_history<Body<C, Material>>) {
       state_.history = remembered(body_.laws());
-      a("history", state_.history);
+      archive_whole(a, "history", state_.history);
       remember(body_.laws(), state_.history);
     }
     iterate_dt_ = 0;

@@ -57,6 +57,7 @@ class Interior {
                             Eigen::VectorXd& f_predicted) {
     if constexpr (Element::bar)
       TUNICA_EXPECT(laws_.prestress().empty(), "F-bar takes no prestress: it knows F at the centre alone");
+    laws_.require_fibres();
     f.setZero(u.size());
     if constexpr (keeps) f_predicted.setZero(u.size());
     for_each_pack([&](const auto& pack, const auto& law, const auto* data, const auto* stored) {

@@ -60,6 +60,7 @@ class MixedInterior {
   /// has J <= 0 or NaN.
   [[nodiscard]] bool forces(const Eigen::VectorXd& x, double, Eigen::VectorXd& f,
                             Eigen::VectorXd& f_predicted) {
+    laws_.require_fibres();
     f.setZero(x.size());
     for_each_pack(x, [&](const Cells& pack, const Material& law, const At& at) {
       MixedTet::Forces<S> out;

@@ -43,6 +43,7 @@ class Statics {
         newton_(options.newton, std::move(solver)) {
     for (auto* v : {&u_, &u_start_, &dead_end_, &dead_start_, &prescribed_end_})
       *v = Eigen::VectorXd::Zero(body_.unknowns());
+    body_.fix_loose_nodes();
   }
 
   void fix(const Patch& patch) { fix(mesh::patch_nodes(patch)); }
@@ -70,7 +71,7 @@ class Statics {
   /// Dead nodal force [N]; replaces the one there was.
   void force(Index node, const Vec3& f) {
     leave_path();
-    dead_end_.segment<3>(3 * node) = f;
+    dead_end_.segment<3>(3 * body_.known(node)) = f;
   }
   /// Follower pressure [Pa] on a patch; returns its number, with which it can be changed.
   std::size_t pressure(const Patch& patch, double p) {
@@ -108,10 +109,7 @@ class Statics {
       Problem problem{*this, next};
       Eigen::VectorXd u = u_;
       const la::NewtonReport newton = advance(problem, u);
-      report.iterations += newton.solve.iterations;
-      report.history = newton.history;
-      report.rounding = newton.rounding;
-      report.solve = newton.solve;
+      tell(newton, body_.unknowns() - 3 * body_.mesh().node_count(), report);
       if (newton) {
         step_ = newton.solve.iterations <= options_.easy_iterations ? length * options_.growth : length;
         accept(u, next);
@@ -136,17 +134,8 @@ class Statics {
     if (done()) leave_path();
     while (!done()) {
       report.path.push_back(step());
-      const StaticsStep& last = report.path.back();
-      report.solve.iterations += last.iterations;
-      report.history = last.history;
-      report.rounding = last.rounding;
-      report.cuts += last.cuts;
-      report.load = last.load;
-      if (last.inverted_cell >= 0) report.inverted_cell = last.inverted_cell;
-      report.solve.status = last.solve.status;
-      if (!last) return report;
-      report.solve.residual = last.solve.residual;
-      ++report.steps;
+      tell(report.path.back(), report);
+      if (!report.path.back()) return report;
     }
     report.solve.status = Status::converged;
     return report;
@@ -278,7 +267,7 @@ class Statics {
     for (Index k = 0; k < body_.unknowns(); ++k)
       if (body_.fixed(k)) d[k] = (1 - t) * u_start_[k] + t * prescribed_end_[k] - u[k];
     newton_.forget();
-    if (d.squaredNorm() > 0 && !follow(newton_, problem, u, d)) {
+    if (!(d.squaredNorm() == 0) && !follow(newton_, problem, u, d)) {
       la::NewtonReport failed;
       failed.solve.status = Status::diverged;
       failed.inadmissible = body_.inverted_cell() >= 0;

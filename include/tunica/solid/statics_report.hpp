@@ -27,6 +27,9 @@ struct [[nodiscard]] StaticsStep {
   Index inverted_cell = -1;       // where J <= 0 in the last failed attempt, -1 if nowhere
   std::vector<double> history{};  // |r| / scale of the last Newton solve
   double rounding = 0;            // what of that is rounding
+  /// Independent directions in which the last tangent was negative: with any, the equilibrium is one that a
+  /// body leaves (past a limit or branching point). -1 where the solver does not count them (Ldlt does).
+  Index unstable = -1;
 
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
 };
@@ -39,9 +42,34 @@ struct [[nodiscard]] StaticsReport {
   Index inverted_cell = -1;         // where J <= 0 in the last failed step, -1 if nowhere
   std::vector<double> history{};    // |r| / scale of the last Newton solve
   double rounding = 0;              // what of that is rounding
+  Index unstable = -1;              // of the last step: see StaticsStep
   std::vector<StaticsStep> path{};  // each step
 
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(solve); }
 };
+
+/// What Newton tells of a step; `pressures`: unknowns in whose directions a stable tangent is negative.
+inline void tell(const la::NewtonReport& newton, Index pressures, StaticsStep& step) {
+  step.solve = newton.solve;
+  step.iterations += newton.solve.iterations;
+  step.history = newton.history;
+  step.rounding = newton.rounding;
+  if (newton.negative_pivots >= 0) step.unstable = newton.negative_pivots - pressures;
+}
+
+/// The report of a path with one more step; the residual is that of steps that held.
+inline void tell(const StaticsStep& step, StaticsReport& report) {
+  report.solve.iterations += step.iterations;
+  report.solve.status = step.solve.status;
+  report.history = step.history;
+  report.rounding = step.rounding;
+  report.unstable = step.unstable;
+  report.cuts += step.cuts;
+  report.load = step.load;
+  if (step.inverted_cell >= 0) report.inverted_cell = step.inverted_cell;
+  if (!step) return;
+  report.solve.residual = step.solve.residual;
+  ++report.steps;
+}
 
 }  // namespace tunica::solid
