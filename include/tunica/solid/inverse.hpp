@@ -192,6 +192,7 @@ template <la::LinearSolver Solver = la::Lu, class Wall>
   static_assert(std::remove_cvref_t<decltype(wall.body())>::per_node == 3,
                 "inverse design finds nodes alone: give a formulation without pressures at them");
   TUNICA_EXPECT(wall.body().laws().prestress().empty(), "the unloaded shape of a body without prestress");
+  wall.body().laws().require_fibres();
   InverseReport report;
   detail::InverseProblem<Wall> problem(wall);
   la::Newton<Solver> newton(options.newton, std::move(solver));
