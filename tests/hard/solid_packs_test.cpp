@@ -90,7 +90,7 @@ void check(const std::string& cell, const Laws& laws) {
   mesh::Tri3, mesh::Tri6, mesh::Quad4, mesh::Tet4, mesh::Tet10, mesh::Hex8, mesh::Hex20, mesh::Hex27, \
       mesh::Wedge6
 
-TEST_SUITE("unit") {
+TEST_SUITE("hard") {
   TEST_CASE_TEMPLATE("solid: packs of every law in every cell hold the elements of their lanes", C,
                      TUNICA_MATRIX_CELLS) {
     const std::string name = std::to_string(C::nodes) + " nodes in " + std::to_string(C::dim) + "-D, ";

@@ -67,7 +67,7 @@ constexpr Known known[] = {
 
 }  // namespace
 
-TEST_SUITE("convergence") {
+TEST_SUITE("hard") {
   TEST_CASE("solid: balloon filled by volume passes its limit pressure within 1 percent") {
     for (const auto& [ratio, stretch, pressure] : known) {
       CHECK(test::Balloon{ratio}.pressure(stretch) == doctest::Approx(pressure).epsilon(1e-8));
