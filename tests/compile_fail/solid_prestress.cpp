@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SAYS: F-bar takes no prestress: it knows F at the centre of the unstressed cell alone
-#include "tunica/solid/prestress.hpp"
 #include "tunica/solid/laws.hpp"
+#include "tunica/solid/prestress.hpp"
 
 using namespace tunica::solid;
 

@@ -168,7 +168,8 @@ template <class Wall>
 template <class Wall>
 [[nodiscard]] PrestressReport prestress(Wall& wall, const PrestressOptions& options = {}) {
   using Body = std::remove_cvref_t<decltype(wall.body())>;
-  static_assert(!std::is_same_v<typename Body::Form::Locking, FBar>,
+  using Locking = typename Body::Form::Locking;
+  static_assert(!std::is_same_v<Locking, FBar> && !std::is_same_v<Locking, CentreVolume>,
                 "F-bar takes no prestress: it knows F at the centre of the unstressed cell alone");
   TUNICA_EXPECT(options.steps > 0, "the load is raised in steps");
   for (Index k = 0; k < wall.body().unknowns(); ++k)
